@@ -2,6 +2,7 @@
 
 mod changes;
 mod control;
+mod laws;
 
 use springpot::Simulation;
 use springpot::law::Catalog;
@@ -82,6 +83,8 @@ memory_rtol = 1e-12
 
 const COLUMNS: [&str; 9] =
     ["q.q1", "q.q2", "q.q3", "v.q2", "strut.force", "tendon.length", "mount.rx.force", "slide.force", "gripper.y"];
+
+const COLUMNS_OF_SLIDER: [&str; 4] = ["q.q1", "v.q1", "strut.force", "strut.stored"];
 
 /// Times that are compared, none of which a step ends on.
 const ROWS: [f64; 2] = [0.1734, 0.3821];

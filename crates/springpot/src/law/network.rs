@@ -292,12 +292,11 @@ impl Network {
     /// Appends what parameters change of its memories at t = 0 ([`super::Leaf::begin_memories`]).
     pub(super) fn begin_memories(
         &self,
-        start: &[f64],
         state: &State,
         own: &LawVariation,
         memories: &mut Vec<MemoryTangent>,
     ) -> Result<(), KernelError> {
-        self.ask().begin_memories(start, &mut state.view(), &mut own.view(), memories)
+        self.ask().begin_memories(&mut state.view(), &mut own.view(), memories)
     }
 
     /// Puts what parameters change of its state at t = 0, where `told` is what changes of its start.

@@ -116,7 +116,7 @@ impl LawVariation {
         let variables = vec![0.0; state.size().variables * count];
         let mut begun = Self { count, numbers, memories: Vec::new(), variables };
         let mut memories = Vec::new();
-        law.begin_memories(told.stroke, state, &begun, &mut memories).map_err(|error| error.to_string())?;
+        law.begin_memories(state, &begun, &mut memories).map_err(|error| error.to_string())?;
         begun.memories = memories;
         law.begin_variation(at, state, told, &mut begun);
         Ok(begun)

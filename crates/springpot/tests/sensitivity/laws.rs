@@ -325,6 +325,79 @@ fn parts_in_series_at_one_node() {
     }
 }
 
+/// Springpots behind others, held since ever.
+fn springpots_in_series() -> Vec<(&'static str, Replay)> {
+    fn springpot(c: Dual, alpha: Dual) -> Network {
+        Network::springpot(c, alpha, Derivative::Caputo)
+    }
+    let all = vec![
+        (
+            "fractional maxwell",
+            Replay::new(|n| Network::series([Network::spring(n[0]), springpot(n[1], n[2])]), &[40.0, 6.0, 0.4])
+                .by_orders(&[2]),
+        ),
+        (
+            "fractional zener",
+            Replay::new(
+                |n| {
+                    let maxwell = Network::series([Network::spring(n[1]), springpot(n[2], n[3])]);
+                    Network::parallel([Network::spring(n[0]), maxwell])
+                },
+                &[10.0, 40.0, 6.0, 0.7],
+            )
+            .by_orders(&[3]),
+        ),
+        (
+            "two springpots",
+            Replay::new(|n| Network::series([springpot(n[0], n[1]), springpot(n[2], n[3])]), &[20.0, 0.3, 6.0, 0.8])
+                .by_orders(&[1, 3]),
+        ),
+        (
+            "springpot beside a spring behind both",
+            Replay::new(
+                |n| {
+                    let voigt = |k, c, alpha| Network::parallel([Network::spring(k), springpot(c, alpha)]);
+                    Network::series([voigt(n[0], n[1], n[2]), voigt(n[3], n[4], n[5])])
+                },
+                &[30.0, 6.0, 0.4, 20.0, 3.0, 0.6],
+            )
+            .by_orders(&[2, 5]),
+        ),
+        (
+            "bent spring and springpot",
+            Replay::new(
+                |n| {
+                    let bent = Network::leaf(Polynomial::new([n[0], 0.0.into(), n[1]]));
+                    Network::series([bent, springpot(n[2], n[3])])
+                },
+                &[30.0, 60000.0, 6.0, 0.5],
+            )
+            .by_orders(&[3]),
+        ),
+        (
+            "rope and springpot",
+            Replay::new(
+                |n| {
+                    let voigt = Network::parallel([Network::spring(n[1]), springpot(n[2], n[3])]);
+                    Network::series([Network::leaf(Stop::tension(n[0])), voigt])
+                },
+                &[60.0, 30.0, 1.5, 0.6],
+            )
+            .by_orders(&[3]),
+        ),
+    ];
+    all.into_iter().map(|(name, replay)| (name, Replay { difference: 2e-3, rounding: 1e-4, ..replay })).collect()
+}
+
+#[test]
+fn springpots_behind_others() {
+    for course in [Course::Sought, Course::Given] {
+        for (name, replay) in springpots_in_series() {
+            Replay { course, ..replay }.check(name, KNOWN);
+        }
+    }
+}
+
 /// A law under a temperature that is told.
 fn heated(numbers: &[Dual], heat: Heat, law: fn(&[Dual]) -> Network) -> Network {
     let entry = Entry {

@@ -198,12 +198,24 @@ impl MemoryTangent {
             piece: Columns::new(parameters, 4),
             by_order: None,
         };
-        let is_singular = memory.is_fractional() && memory.kind() == Kind::RiemannLiouville;
-        if is_singular && seeds.jump.iter().any(|jump| *jump != 0.0) {
-            tangent.jumps.push(Jump::of_start(seeds.jump));
-        }
+        tangent.start_jump(memory, seeds.jump);
         tangent.open(memory);
         Ok(tangent)
+    }
+
+    /// At t = 0, x(0) changes by `origin`, P numbers: of a Riemann–Liouville start all of it jumps there.
+    pub fn begin(&mut self, memory: &Memory, origin: &[f64]) {
+        self.origin.copy_from_slice(origin);
+        self.jumps.clear();
+        self.start_jump(memory, origin);
+    }
+
+    /// What of x jumps at t = 0 changes by so much.
+    fn start_jump(&mut self, memory: &Memory, jump: &[f64]) {
+        let is_singular = memory.is_fractional() && memory.kind() == Kind::RiemannLiouville;
+        if is_singular && jump.iter().any(|jump| *jump != 0.0) {
+            self.jumps.push(Jump::of_start(jump));
+        }
     }
 
     /// Makes the columns of a memory that has a kernel, where there are none yet.

@@ -219,20 +219,19 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
         self.by_columns().map(|own| own.numbers(take)).is_some()
     }
 
-    /// Puts what changes of its inner variables at t = 0, by its own numbers and by what is `told` of `at`.
+    /// Puts what changes of its state at t = 0, by its own numbers and by what is `told` of `at`; also again, where that was not all of it.
     fn begin_variation(&self, at: &Point, _state: StateRef, told: &PointVariation, own: VariationMut) {
         if let Some(columns) = self.by_columns() {
             columns.begin(at, told, own);
         }
     }
 
-    /// Appends what changes of its memories at t = 0, where x(0) changes by `start`, a block.
+    /// Appends what changes of its memories where x(0) stays; [`Leaf::begin_variation`] tells what changes of that.
     ///
     /// # Errors
     /// [`KernelError`] where there is no derivative by its order.
     fn begin_memories(
         &self,
-        _start: &[f64],
         _: StateRef,
         _own: VariationRef,
         _memories: &mut Vec<MemoryTangent>,

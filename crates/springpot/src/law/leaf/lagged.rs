@@ -233,13 +233,12 @@ impl<L: Leaf> Leaf for Lagged<L> {
 
     fn begin_memories(
         &self,
-        start: &[f64],
         state: StateRef,
         mut own: VariationRef,
         memories: &mut Vec<MemoryTangent>,
     ) -> Result<(), KernelError> {
         own.take(1, OWN);
-        self.leaf.begin_memories(start, Self::split(state).1, own, memories)
+        self.leaf.begin_memories(Self::split(state).1, own, memories)
     }
 
     fn begin_variation(&self, at: &Point, state: StateRef, told: &PointVariation, mut own: VariationMut) {

@@ -17,7 +17,9 @@ use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::Course;
 use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
 use crate::law::tangent::LeafAtRest;
-use crate::law::variation::{ObservationVariation, PointVariation, StepVariation, VariationMut, VariationRef, add};
+use crate::law::variation::{
+    ObservationVariation, PointVariation, PowersVariation, StepVariation, VariationMut, VariationRef, add,
+};
 use std::borrow::Cow;
 
 /// A coefficient that may follow an input: constant + slope·input.
@@ -129,6 +131,20 @@ impl Coefficient {
         let Some(followed) = self.input else { return };
         add(sum, factor * inputs[followed].value, own.number(1));
         input.into_iter().for_each(|input| add(sum, factor * self.slope.value, input));
+    }
+
+    /// The same of the rate of c, where that of the input changes by `rate`.
+    fn add_rate_change(
+        &self,
+        inputs: &[InputValue],
+        rate: Option<&[f64]>,
+        own: &VariationRef,
+        factor: f64,
+        sum: &mut [f64],
+    ) {
+        let Some(followed) = self.input else { return };
+        add(sum, factor * inputs[followed].rate, own.number(1));
+        rate.into_iter().for_each(|rate| add(sum, factor * self.slope.value, rate));
     }
 }
 
@@ -282,16 +298,18 @@ impl Leaf for Springpot {
 
     fn begin_memories(
         &self,
-        start: &[f64],
         state: StateRef,
         own: VariationRef,
         memories: &mut Vec<MemoryTangent>,
     ) -> Result<(), KernelError> {
-        let none = vec![0.0; start.len()];
-        let jump = if self.derivative == Derivative::RiemannLiouville { start } else { &none };
-        let seeds = TangentSeeds { alpha: own.number(ALPHA), origin: start, jump };
+        let none = vec![0.0; own.count];
+        let seeds = TangentSeeds { alpha: own.number(ALPHA), origin: &none, jump: &none };
         memories.push(MemoryTangent::new(&state.memories[0], &seeds)?);
         Ok(())
+    }
+
+    fn begin_variation(&self, _: &Point, state: StateRef, told: &PointVariation, own: VariationMut) {
+        own.memories[0].begin(&state.memories[0], told.stroke);
     }
 
     fn vary(&self, step: &Step, state: StateRef, told: &StepVariation, own: VariationRef, forces: &mut [f64]) {
@@ -323,6 +341,42 @@ impl Leaf for Springpot {
             TangentEnd { stroke: step.stroke[last], delta_stroke: told.stroke_at(last), resolution: step.resolution };
         let end = (step.form == Form::Rates).then_some(&end);
         own.memories[0].commit(&state.memories[0], &tangent_step, &changes, end);
+    }
+
+    fn vary_powers(
+        &self,
+        step: &Step,
+        state: StateRef,
+        told: &StepVariation,
+        own: VariationRef,
+        sum: &mut PowersVariation,
+    ) {
+        let (memory, tangent, count) = (&state.memories[0], &own.memories[0], own.count);
+        if memory.is_singular() {
+            // As of the energies themselves.
+            return;
+        }
+        let tangent_step = Self::tangent_step(step);
+        let (mut changes, mut stored, mut dissipation) = (vec![0.0; 4 * count], vec![0.0; count], vec![0.0; count]);
+        tangent_step.delta_polynomial(told.stroke, told.rate, &mut changes);
+        for k in 0..=step.nodes.count() {
+            let (at, theta) = (step.point(k), if k == 0 { 0.0 } else { step.positions()[k - 1] });
+            let (delta_stroke, delta_rate) = (told.stroke_at(k), told.rate_at(k));
+            let point = TangentPoint { stroke: at.stroke, rate: at.rate, delta_stroke, delta_rate };
+            let mut change = EnergyTangent { stored: &mut stored, dissipation: &mut dissipation };
+            tangent.energy(memory, &tangent_step, theta, &point, &changes, &mut change);
+            let (c, energy) =
+                (self.coefficient.at(at.inputs), memory.energy(&tangent_step.polynomial, theta, at.stroke, at.rate));
+            let followed = self.coefficient.input.and_then(|input| told.input_at(k, input, at.inputs.len()));
+            let block = k * count..(k + 1) * count;
+            add(&mut sum.dissipation[block.clone()], c.value, &dissipation);
+            let by_value = followed.map(|[value, _]| value);
+            let to = &mut sum.dissipation[block.clone()];
+            self.coefficient.add_change(at.inputs, by_value, &own, energy.dissipation, to);
+            add(&mut sum.input[block.clone()], c.rate, &stored);
+            let rate = followed.map(|[_, rate]| rate);
+            self.coefficient.add_rate_change(at.inputs, rate, &own, energy.stored, &mut sum.input[block]);
+        }
     }
 
     fn vary_at(

@@ -139,12 +139,11 @@ impl Leaf for Unshifted {
 
     fn begin_memories(
         &self,
-        start: &[f64],
         state: StateRef,
         own: VariationRef,
         memories: &mut Vec<MemoryTangent>,
     ) -> Result<(), KernelError> {
-        self.leaf.begin_memories(start, state, own, memories)
+        self.leaf.begin_memories(state, own, memories)
     }
 
     fn begin_variation(&self, at: &Point, state: StateRef, told: &PointVariation, own: VariationMut) {

@@ -22,14 +22,13 @@ pub(in crate::law) trait Vary: Part {
     /// Appends what changes of its memories at t = 0 ([`crate::law::Leaf::begin_memories`]).
     fn begin_memories(
         &self,
-        start: &[f64],
         state: &mut StateRef,
         own: &mut VariationRef,
         memories: &mut Vec<MemoryTangent>,
     ) -> Result<(), KernelError> {
         state.take(self.own_size());
         own.take(0, self.own_size());
-        self.parts().iter().try_for_each(|part| part.ask().begin_memories(start, state, own, memories))
+        self.parts().iter().try_for_each(|part| part.ask().begin_memories(state, own, memories))
     }
 
     /// Puts what changes of its state at t = 0 ([`crate::law::Leaf::begin_variation`]).
@@ -99,13 +98,12 @@ impl Vary for LeafPart {
 
     fn begin_memories(
         &self,
-        start: &[f64],
         state: &mut StateRef,
         own: &mut VariationRef,
         memories: &mut Vec<MemoryTangent>,
     ) -> Result<(), KernelError> {
         let size = self.leaf.size();
-        self.leaf.begin_memories(start, state.take(size), own.take(self.number_count(), size), memories)
+        self.leaf.begin_memories(state.take(size), own.take(self.number_count(), size), memories)
     }
 
     fn begin_variation(&self, at: &Point, state: &mut StateRef, told: &PointVariation, own: &mut VariationMut) {

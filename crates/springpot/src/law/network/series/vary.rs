@@ -365,9 +365,6 @@ impl Vary for Series {
         if (0..self.parts.len()).filter(|k| self.slides(*k)).count() > 1 {
             return Some("friction in series with friction".to_owned());
         }
-        if self.size().memories > 0 {
-            return Some("a springpot in series".to_owned());
-        }
         self.parts.iter().find_map(|part| part.ask().without_derivatives())
     }
 

@@ -2,7 +2,8 @@
 
 use super::start::shares;
 use super::vary::number_count;
-use super::{Play, Series};
+use super::{Derivative, Play, Series};
+use crate::fractional::Memory;
 use crate::law::leaf::When;
 use crate::law::network::part::{Onset, Part};
 use crate::law::state::StateRef;
@@ -29,7 +30,7 @@ pub(super) fn begin(series: &Series, at: &Point, state: &mut StateRef, told: &Po
     let left = slack.map_or(0.0, |play| at.stroke - play.free(at.stroke));
     let takes_all = slack.filter(|_| left == 0.0).map(Play::first);
     let is_unstretched = strokes.iter().all(|stroke| *stroke == 0.0);
-    let of_parts = shares(series, at, Onset::Long).of_parts;
+    let of_parts = shares(series, at, onset(series, &states)).of_parts;
     let holds = |k: &usize| if is_unstretched { of_parts[*k] != 0.0 } else { strokes[*k] != 0.0 };
     let holding: Vec<usize> =
         (0..parts.len()).filter(holds).filter(|k| slack.is_none() || !series.is_free(*k)).collect();
@@ -93,4 +94,11 @@ pub(super) fn begin(series: &Series, at: &Point, state: &mut StateRef, told: &Po
         begin_part(k, strokes[k], moved);
         of_strokes.variables[k * count..(k + 1) * count].copy_from_slice(moved);
     }
+}
+
+/// Which end of the times shares what a series begins with: of what was held since ever what has relaxed, of what jumps at t = 0 what has not begun.
+fn onset(series: &Series, states: &[StateRef]) -> Onset {
+    let kind = states.iter().find_map(|state| state.memories.first()).map(Memory::kind);
+    let unloaded = kind.map_or(series.is_unloaded, |kind| kind == Derivative::RiemannLiouville);
+    if unloaded { Onset::Short } else { Onset::Long }
 }

@@ -1,0 +1,45 @@
+//! Laws with memories behind others, whose files say how they began.
+
+use crate::{COLUMNS_OF_SLIDER, compare};
+
+/// A mass on a rail, held by one element.
+fn slider(element: &str) -> String {
+    format!(
+        r#"
+[robot]
+gravity = [0, 0, 0]
+[[robot.body]]
+name = "cart"
+joint = {{ name = "q1", kind = "prismatic", axis = [1, 0, 0] }}
+mass = 2
+inertia = {{ xx = 0.01, yy = 0.01, zz = 0.01 }}
+[[element]]
+name = "strut"
+joint = "q1"
+rest = 0.03
+{element}
+[motion]
+kind = "forward"
+start = {{ q = {{ q1 = 0.1 }}, v = {{ q1 = 1 }} }}
+[time]
+end = 0.4
+output_step = 0.1
+[solver]
+rtol = 1e-10
+memory_rtol = 1e-12
+"#
+    )
+}
+
+#[test]
+fn springpots_in_series() {
+    let zener = slider("law = \"fractional-zener\"\nparameters = { k_e = 20, k_m = 50, c = 30, alpha = 0.5 }");
+    let paths = [("element.strut.k_m", 0.2), ("element.strut.alpha", 1e-3), ("motion.start.q.q1", 1e-3)];
+    compare(&zener, &COLUMNS_OF_SLIDER, &paths);
+    let two = slider(
+        "network = \"series(springpot(c_1, a_1), springpot(c_2, a_2))\"\n\
+         parameters = { c_1 = 50, a_1 = 0.2, c_2 = 30, a_2 = 0.7 }",
+    );
+    let paths = [("element.strut.c_1", 0.2), ("element.strut.a_1", 1e-3), ("element.strut.a_2", 1e-3)];
+    compare(&two, &COLUMNS_OF_SLIDER, &paths);
+}
