@@ -43,3 +43,22 @@ fn springpots_in_series() {
     let paths = [("element.strut.c_1", 0.2), ("element.strut.a_1", 1e-3), ("element.strut.a_2", 1e-3)];
     compare(&two, &COLUMNS_OF_SLIDER, &paths);
 }
+
+#[test]
+fn starts_that_are_singular() {
+    // From x(0) = 0.07 m, and from 0, where only changes of it are singular.
+    for (order, start) in [(0.3, 0.1), (0.9, 0.1), (0.5, 0.03)] {
+        let text = slider(&format!(
+            "law = \"fractional-kelvin-voigt\"\nparameters = {{ k = 50, c = 40, alpha = {order} }}\npast = \"unloaded\""
+        ));
+        let text = text.replace("q1 = 0.1", &format!("q1 = {start}"));
+        let paths = [
+            ("element.strut.c", 0.2),
+            ("element.strut.alpha", 1e-3),
+            ("element.strut.rest", 1e-3),
+            ("motion.start.q.q1", 1e-3),
+            ("robot.body.cart.mass", 1e-2),
+        ];
+        compare(&text, &["q.q1", "v.q1", "a.q1", "strut.force"], &paths);
+    }
+}

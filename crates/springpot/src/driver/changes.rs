@@ -32,8 +32,8 @@ impl Driver {
     pub(super) fn settle_variation(&mut self, before: [&[f64]; 2], is_own: bool) -> Result<(), RunError> {
         let Recorder { evaluations: [at, ..], equations, variation, .. } = &mut self.recorder;
         if let Some(variation) = variation {
-            let start = Node { t: at.t, q: &at.q, v: &at.v, a: &at.a };
-            variation.settle(equations, start, before, is_own)?;
+            let a = self.solver.stepper().starts_with().unwrap_or(&at.a);
+            variation.settle(equations, Node { t: at.t, q: &at.q, v: &at.v, a }, [before, [&at.v, &at.a]], is_own)?;
         }
         Ok(())
     }

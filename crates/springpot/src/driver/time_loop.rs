@@ -52,7 +52,7 @@ pub(super) struct Mark {
 /// A run between two steps, or with one that was worked out and is not yet taken into the past, so that it can be looked into.
 #[derive(Debug)]
 pub(super) struct Driver {
-    solver: Solver,
+    pub(super) solver: Solver,
     pub(super) recorder: Recorder,
     /// What looks at the mass matrix of robots where it may be indefinite.
     definite: Option<Definite>,
@@ -115,6 +115,9 @@ impl Driver {
         cx.system.check_definite(&self.recorder.evaluations[0].q)?;
         self.recorder.open(cx, first)?;
         self.begin_variation(cx)?;
+        let Recorder { equations, variation, settings, .. } = &self.recorder;
+        let longest = variation.as_ref().map(|variation| variation.longest_first(equations, settings.rtol));
+        let first = longest.filter(|_| settings.first_step.is_none()).map_or(first, |longest| first.min(longest));
         self.h = self.aligned(first);
         self.planned = self.h;
         Ok(())
@@ -130,7 +133,8 @@ impl Driver {
         }
         let mut begun = Variation::new(cx.system, by, equations)?;
         begun.hold(sampler.as_ref().and_then(|sampler| sampler.held_changes()));
-        begun.begin(equations, Node { t: at.t, q: &at.q, v: &at.v, a: &at.a })?;
+        let a = self.solver.stepper().starts_with().unwrap_or(&at.a);
+        begun.begin(equations, Node { t: at.t, q: &at.q, v: &at.v, a })?;
         *variation = Some(Box::new(begun));
         Ok(())
     }
@@ -142,7 +146,8 @@ impl Driver {
         let Some(by) = &cx.system.sensitivity else { return Ok(()) };
         let mut loaded = Variation::new(cx.system, by, equations)?;
         loaded.hold(sampler.as_ref().and_then(|sampler| sampler.held_changes()));
-        let start = Node { t: at.t, q: &at.q, v: &at.v, a: &at.a };
+        let a = self.solver.stepper().starts_with().unwrap_or(&at.a);
+        let start = Node { t: at.t, q: &at.q, v: &at.v, a };
         if !state.is_some_and(|state| loaded.load(state, equations, start)) {
             return Err(RunError::OtherRun);
         }
@@ -553,7 +558,10 @@ impl Driver {
         // All parameters of a column stand together.
         for columns in by.columns.chunk_by(|one, next| one.of == next.of) {
             let values = variation.and_then(|variation| variation.values(columns[0].of, snapshot));
-            let value = |by: usize| values.as_ref().map_or(f64::NAN, |values| values[by]);
+            // Empty where the column is.
+            let values = values.filter(|_| !snapshot.value(columns[0].of).is_nan());
+            let finite = |value: f64| if value.is_finite() { value } else { f64::NAN };
+            let value = |by: usize| values.as_ref().map_or(f64::NAN, |values| finite(values[by]));
             derivatives.extend(columns.iter().map(|column| value(column.by)));
         }
         snapshot.derivatives = derivatives;

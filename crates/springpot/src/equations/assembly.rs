@@ -416,15 +416,7 @@ impl Equations {
             cx.inputs_at(e, t, &mut inputs);
             let mut sum = [0.0; 3];
             self.bank.for_each_singularity(e, &inputs, &mut |term| {
-                let alpha = term.order;
-                let parts = |t: f64| {
-                    let value = if t == 0.0 { 0.0 } else { term.coefficient * t.powf(-alpha) };
-                    [value, value * t / (1.0 - alpha), value * t * t / ((1.0 - alpha) * (2.0 - alpha))]
-                };
-                let ([value, once, twice], [_, before, before_twice]) = (parts(t), parts(from));
-                sum[0] += value;
-                sum[1] += once - before;
-                sum[2] += twice - before_twice - (t - from) * before;
+                sum.iter_mut().zip(singular_parts(&term, from, t)).for_each(|(sum, part)| *sum += part);
             });
             forces.push(sum);
         }
@@ -460,6 +452,11 @@ impl Equations {
         self.elements[e].force
     }
 
+    /// The force of element `e` that the accelerations at the start go with, N or N·m.
+    pub(crate) fn force_behind(&self, e: usize) -> f64 {
+        self.elements[e].force + self.elements[e].singular
+    }
+
     /// How stiff the end stops and other kinks of forces are that velocity `k` moves, N·m/rad or N/m, at the start.
     pub(crate) fn stiffness_of_stops(&self, cx: Context, k: usize) -> f64 {
         let stops = self.kinks.elements().iter();
@@ -489,4 +486,15 @@ fn may_yield(element: &Element) -> bool {
     let at = Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &inputs };
     element.law.for_each_springpot(&at, &mut |term| may_yield |= term.is_yielding());
     may_yield
+}
+
+/// A share s·t^−alpha of a singular start in a force at t, its integral from `from` on, and the integral of that.
+pub(super) fn singular_parts(term: &crate::law::Term, from: f64, t: f64) -> [f64; 3] {
+    let alpha = term.order;
+    let parts = |t: f64| {
+        let value = if t == 0.0 { 0.0 } else { term.coefficient * t.powf(-alpha) };
+        [value, value * t / (1.0 - alpha), value * t * t / ((1.0 - alpha) * (2.0 - alpha))]
+    };
+    let ([value, once, twice], [_, before, before_twice]) = (parts(t), parts(from));
+    [value, once - before, twice - before_twice - (t - from) * before]
 }

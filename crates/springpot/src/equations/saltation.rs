@@ -214,8 +214,8 @@ impl Variation {
         self.arrived = Some(a.to_vec());
     }
 
-    /// Goes to the far side of what was crossed, `start`, where velocities and accelerations were `before`; at a change of the robot's own, whose
-    /// time nobody gave beforehand, where `is_own`.
+    /// Goes to the far side of what was crossed, `start`, where velocities and accelerations were those `before` and are those `after`; at a
+    /// change of the robot's own, whose time nobody gave beforehand, where `is_own`.
     ///
     /// # Errors
     /// What is kept of a controller's errors and cannot go on.
@@ -223,7 +223,7 @@ impl Variation {
         &mut self,
         equations: &Equations,
         start: Node,
-        before: [&[f64]; 2],
+        [before, after]: [[&[f64]; 2]; 2],
         is_own: bool,
     ) -> Result<(), SensitivityError> {
         let count = self.count();
@@ -232,22 +232,22 @@ impl Variation {
             let pairs = before.iter().zip(after).enumerate().filter(|(k, _)| counts(*k));
             pairs.fold(0.0, |jump: f64, (_, (before, after))| jump.max((before - after).abs())) > JUMP * largest
         };
-        let [v, a] = before;
+        let ([v, a], [v_after, a_after]) = (before, after);
         let arrived = self.arrived.take();
         let a = arrived.as_deref().unwrap_or(a);
-        if jump(v, start.v, &|k| equations.free().contains(&k)) {
+        if jump(v, v_after, &|k| equations.free().contains(&k)) {
             self.lose_all(start.t, "velocities jump with that of a joint that a signal moves");
         }
         match self.later.take() {
             Some(later) => {
-                for (k, (before, after)) in a.iter().zip(start.a).enumerate() {
+                for (k, (before, after)) in a.iter().zip(a_after).enumerate() {
                     let blocks = self.own_v[k] * count..;
                     let changes = self.nodes[0].v[blocks].iter_mut().zip(&later).filter(|(_, later)| later.is_finite());
                     changes.for_each(|(v, later)| *v += (before - after) * later);
                 }
                 self.last = Some((start.t, later));
             }
-            None if is_own && jump(a, start.a, &|_| true) => self.lose_all(start.t, "forces jump there"),
+            None if is_own && jump(a, a_after, &|_| true) => self.lose_all(start.t, "forces jump there"),
             None => self.last = None,
         }
         self.hold_still(equations);
@@ -257,6 +257,7 @@ impl Variation {
         }
         self.see_start(equations, start);
         self.accelerate(equations);
+        self.restart_singular(equations);
         Ok(())
     }
 

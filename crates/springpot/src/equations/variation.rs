@@ -1,5 +1,7 @@
 //! What parameters change at the nodes of a step: the equations of motion linearised there, and their right sides.
 
+mod singular;
+
 use super::assembly::Equations;
 use super::control::{ControlRun, ControlVariation, ControlVariationState, HeldVariation, Place, Shown, Sides, Target};
 use super::node::Node;
@@ -13,13 +15,14 @@ use crate::dynamics::{
 };
 use crate::elements::{Forces, Pull, Reading};
 use crate::law::variation::{LawVariation, ObservationVariation, PointVariation, StepVariation};
-use crate::law::{Network, Response};
+use crate::law::{Derivative, Network, Response};
 use crate::model::{FrictionLaw, Model};
 use crate::observe::{ElementQuantity, EnergyQuantity, Quantity, Snapshot};
 use crate::sensitivity::{Lost, Seed, Sensitivity, SensitivityError};
 use crate::spatial::Inertia;
 use crate::system::{Motion, System};
 use serde::{Deserialize, Serialize};
+use singular::{Singular, SingularState};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -41,6 +44,7 @@ pub(crate) struct Variation {
     pub(crate) nodes: [NodeVariation; ROW + 1],
     /// How large q and v have changed so far, in the blocks of the nodes.
     sizes: [Vec<f64>; 2],
+    singular: Singular,
     forces: Forces,
     workspace: Workspace,
     pub(crate) solve: Solve,
@@ -103,6 +107,7 @@ pub(crate) struct VariationState {
     /// Blocks of q, v and a where the next step starts.
     motion: [Vec<f64>; 3],
     sizes: [Vec<f64>; 2],
+    singular: SingularState,
     laws: Vec<LawVariation>,
     later: Option<Vec<f64>>,
     arrived: Option<Vec<f64>>,
@@ -136,7 +141,8 @@ pub(crate) struct NodeVariation {
     pub(crate) kinematics: Kinematics,
     /// ∂(RNEA + resistance + Σ g F)/∂q, /∂v, /∂a, F constant.
     pub(crate) slopes: RneaDerivatives,
-    /// v and a of the extended robot.
+    /// q, v and a of the extended robot.
+    q_now: Vec<f64>,
     v_now: Vec<f64>,
     pub(super) a_now: Vec<f64>,
     /// y and y' of every element.
@@ -183,6 +189,7 @@ impl Variation {
             t: 0.0,
             kinematics: Kinematics::new(model),
             slopes: RneaDerivatives::new(model),
+            q_now: start.clone(),
             v_now: vec![0.0; model.nv()],
             a_now: vec![0.0; model.nv()],
             readings: vec![[0.0; 2]; extended.elements.len()],
@@ -228,12 +235,13 @@ impl Variation {
         Ok(Self {
             own_q,
             own_v,
-            q: start,
+            q: start.clone(),
             elements,
             placed,
             inertias: Inertias::of(by),
             nodes: std::array::from_fn(|_| node()),
             sizes: [zeros(), zeros()],
+            singular: Singular::new(extended.elements.len(), model.nv(), count),
             forces: Forces::default(),
             workspace: Workspace::new(model),
             solve: Solve::default(),
@@ -262,7 +270,7 @@ impl Variation {
         let expected = |size: f64| if typical > 0.0 { BEGUN * size / typical } else { 0.0 };
         let [q, v] = self.sized(row, p);
         let ([most_q, most_v], [travel, speed]) = (largest.map(|size| BESIDE * size), moved.map(expected));
-        [q.max(most_q).max(travel), v.max(most_v).max(speed)]
+        [q.max(most_q).max(travel).max(self.jump_travel(row, p)), v.max(most_v).max(speed)]
     }
 
     /// How large q and v of any velocity have changed by parameter `p`.
@@ -318,9 +326,6 @@ impl Variation {
         }
         self.hold_still(equations);
         // What laws keep begins at the strokes and inputs of t = 0.
-        if equations.is_singular() {
-            return Err(SensitivityError::Unknown { what: "a singular start".to_owned() });
-        }
         self.see_start(equations, start);
         if let (Some(control), Some(run)) = (&mut self.control, &equations.control) {
             let [node, ..] = &self.nodes;
@@ -345,6 +350,12 @@ impl Variation {
             }
             let at = equations.bank.point(e, 0);
             let own = &self.elements[e];
+            // What jumps there is shared out by the parts of a series on no scale of time.
+            let jumps = at.stroke != 0.0 || own.stroke[..count].iter().any(|change| *change != 0.0);
+            if jumps && element.derivative == Derivative::RiemannLiouville && element.law.has_memories_in_series() {
+                let what = format!("the jump at t = 0 of springpots in series in \"{}\"", element.name);
+                return Err(SensitivityError::Unknown { what });
+            }
             let told = at_start(count, [&own.stroke, &own.rate], &own.inputs);
             let begun = LawVariation::begin(&element.law, &laws, &at, &told, state);
             self.elements[e].law = begun.map_err(|leaf| SensitivityError::Unknown {
@@ -352,6 +363,7 @@ impl Variation {
             })?;
         }
         self.accelerate(equations);
+        self.begin_singular(equations);
         self.take_sizes();
         Ok(())
     }
@@ -377,7 +389,7 @@ impl Variation {
 
     /// Sees where the step starts, and what changes of the elements there.
     pub(super) fn see_start(&mut self, equations: &Equations, start: Node) {
-        let force: Vec<f64> = (0..self.elements.len()).map(|e| equations.force_at_start(e)).collect();
+        let force: Vec<f64> = (0..self.elements.len()).map(|e| equations.force_behind(e)).collect();
         self.see(equations, 0, start, &force);
         self.steer(0, equations, &force);
         (0..self.elements.len()).for_each(|e| self.measure(e, 0));
@@ -429,6 +441,7 @@ impl Variation {
             (node.v_now[k], node.a_now[k]) = (*v, *a);
         }
         node.t = at.t;
+        node.q_now.copy_from_slice(q);
         node.kinematics.update_velocity(model, q, &node.v_now);
         let n = model.nv();
         let measured = node.gradients.iter_mut().zip(&mut node.hessians).zip(&mut node.readings);
@@ -696,6 +709,7 @@ impl Variation {
             control.ask(run);
             (1..=STAGES).for_each(|i| control.push(i, run, false));
         }
+        self.ask_singular(equations);
     }
 
     /// Takes the accepted step into what changes of the laws' states; the bank has not taken it yet.
@@ -708,6 +722,9 @@ impl Variation {
         for (e, ElementVariation { law, stroke, rate, inputs, .. }) in self.elements.iter_mut().enumerate() {
             let told = of_step(count, [stroke, rate], inputs);
             equations.bank.commit_variation(e, &told, law);
+        }
+        self.commit_singular(equations);
+        for ElementVariation { stroke, rate, inputs, .. } in &mut self.elements {
             let last = STAGES * count;
             for blocks in [stroke, rate] {
                 blocks.copy_within(last..last + count, 0);
@@ -734,6 +751,7 @@ impl Variation {
         VariationState {
             motion: [q.clone(), v.clone(), a.clone()],
             sizes: self.sizes.clone(),
+            singular: self.singular.save(self.count()),
             laws,
             control,
             later: self.later.clone(),
@@ -746,9 +764,11 @@ impl Variation {
 
     /// Goes on from what was saved where the run is at `start`; `false` where that is of another one.
     pub(crate) fn load(&mut self, state: VariationState, equations: &Equations, start: Node) -> bool {
-        let VariationState { motion: [q, v, a], sizes, laws, control, later, arrived, last, held, lost } = state;
-        let blocks = self.sizes[0].len();
-        if laws.len() != self.elements.len()
+        let VariationState { motion: [q, v, a], sizes, singular, laws, control, later, arrived, last, held, lost } =
+            state;
+        let (blocks, count) = (self.sizes[0].len(), self.count());
+        if !self.singular.load(singular, count)
+            || laws.len() != self.elements.len()
             || lost.len() != self.lost.len()
             || [&q, &v, &a].into_iter().chain(&sizes).any(|own| own.len() != blocks)
         {
@@ -792,6 +812,7 @@ impl Variation {
     pub(crate) fn read(&mut self, equations: &Equations, theta: Option<f64>, snapshot: &Snapshot) {
         let evaluation = &snapshot.evaluation;
         let force: Vec<f64> = (0..self.elements.len()).map(|e| snapshot.force(e)).collect();
+        self.move_row(equations, theta, snapshot);
         self.see(
             equations,
             ROW,
@@ -820,6 +841,12 @@ impl Variation {
             match theta {
                 Some(theta) => equations.bank.vary_at(e, (theta, &point), &told, law, &mut sum),
                 None => equations.bank.vary_now(e, &point, &told, law, &mut sum),
+            }
+            if self.singular.is_there {
+                let from = evaluation.t;
+                let [change, ..] = self.singular_at(equations, e, from, snapshot);
+                let [force, _] = &mut self.elements[e].row;
+                force.iter_mut().zip(change).for_each(|(force, change)| *force += change);
             }
         }
     }

@@ -552,6 +552,19 @@ impl Memory {
         &self.local
     }
 
+    /// [`Self::singular_part`] at t, its integral from `from` on, and the integral of that.
+    pub(crate) fn singular_motion(&self, from: f64, t: f64) -> [f64; 3] {
+        if !self.is_singular() {
+            return [0.0; 3];
+        }
+        let parts = |t: f64| {
+            let value = if t == 0.0 { 0.0 } else { self.singular_part(t) };
+            [value, value * t / (1.0 - self.alpha), value * t * t / ((1.0 - self.alpha) * (2.0 - self.alpha))]
+        };
+        let ([value, once, twice], [_, before, before_twice]) = (parts(t), parts(from));
+        [value, once - before, twice - before_twice - (t - from) * before]
+    }
+
     /// x(0) of a singular start, else 0.
     pub(super) fn singular_jump(&self) -> f64 {
         self.jump

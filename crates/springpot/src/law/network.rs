@@ -328,6 +328,32 @@ impl Network {
         self.ask().vary_powers(step, &mut state.view(), told, &mut own.view(), sum);
     }
 
+    /// What parameters change of its singular forces at the nodes of a step, node by node, a block for each ([`super::Leaf::vary_singular`]).
+    pub fn vary_singular(
+        &self,
+        step: &Step,
+        state: &State,
+        told: &StepVariation,
+        own: &LawVariation,
+        forces: &mut [f64],
+    ) {
+        forces.fill(0.0);
+        self.ask().vary_singular(step, &mut state.view(), told, &mut own.view(), forces);
+    }
+
+    /// Adds what parameters change of its singular forces at the time of `at`, and of their integrals since `from`
+    /// ([`super::Leaf::vary_singularity`]).
+    pub fn vary_singularity(
+        &self,
+        (from, at): (f64, &Point),
+        state: &State,
+        told: &PointVariation,
+        own: &LawVariation,
+        sums: [&mut [f64]; 3],
+    ) {
+        self.ask().vary_singularity((from, at), &mut state.view(), told, &mut own.view(), sums);
+    }
+
     /// Adds what parameters change of it at one time: within a step, or between two.
     pub fn vary_at(
         &self,
@@ -517,7 +543,7 @@ impl Network {
     }
 
     /// Whether a part of a series has a memory.
-    pub(super) fn has_memories_in_series(&self) -> bool {
+    pub(crate) fn has_memories_in_series(&self) -> bool {
         self.ask().has_memories_in_series()
     }
 

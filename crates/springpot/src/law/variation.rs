@@ -127,6 +127,11 @@ impl LawVariation {
         &self.variables
     }
 
+    /// Whether something of it is infinite at t = 0.
+    pub(crate) fn is_singular(&self) -> bool {
+        self.memories.iter().any(MemoryTangent::has_jumps)
+    }
+
     /// All of it.
     pub(crate) fn view(&self) -> VariationRef<'_> {
         VariationRef { count: self.count, numbers: &self.numbers, memories: &self.memories, variables: &self.variables }

@@ -134,6 +134,11 @@ pub(crate) trait Stepper: std::fmt::Debug + Send + Sync {
     /// Works out what parameters change of the motion at θ of the step at hand, as a row is asked for.
     fn vary_within(&mut self, _: &mut Variation, _theta: f64, _size: f64) {}
 
+    /// The accelerations that the next step starts with, where those of rows are others: without the share of what is infinite there.
+    fn starts_with(&self) -> Option<&[f64]> {
+        None
+    }
+
     /// Whether it works out what parameters change ([`Self::vary`]).
     fn varies(&self) -> bool {
         true

@@ -26,6 +26,29 @@ impl ElementBank {
         }
     }
 
+    /// What changes of the singular forces of element `e` at the nodes ([`crate::law::Leaf::vary_singular`]).
+    pub(crate) fn vary_singular(&self, e: usize, by: &StepVariation, own: &LawVariation, forces: &mut [f64]) {
+        let Banked { law, kept, told, .. } = &self.elements[e];
+        if let Some(Kept { state, .. }) = kept {
+            law.vary_singular(&told.step(self.step), state, by, own, forces);
+        }
+    }
+
+    /// Adds what changes of the singular forces of element `e` at the time of `at`, and of their integrals since `from`.
+    pub(crate) fn vary_singularity(
+        &self,
+        e: usize,
+        at: (f64, &Point),
+        by: &PointVariation,
+        own: &LawVariation,
+        sums: [&mut [f64]; 3],
+    ) {
+        let Banked { law, kept, .. } = &self.elements[e];
+        if let Some(Kept { state, .. }) = kept {
+            law.vary_singularity(at, state, by, own, sums);
+        }
+    }
+
     /// Adds what changes of element `e` at t_n + θh of the step, where it is told `at`.
     pub(crate) fn vary_at(
         &self,

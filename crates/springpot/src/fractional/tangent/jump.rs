@@ -75,6 +75,41 @@ impl MemoryTangent {
         }
     }
 
+    /// Whether the derivative of x has jumped: it has singular parts where the memory itself may have none.
+    pub fn has_jumps(&self) -> bool {
+        !self.jumps.is_empty()
+    }
+
+    /// Adds the derivative of [`Memory::singular_moments`], and what stands for jumps, at the nodes of a step, s rows of P.
+    pub fn singular_moments(&self, memory: &Memory, step: &TangentStep, out: &mut [f64]) {
+        self.add_singular(memory, step, Singular::Moments, out);
+    }
+
+    /// Adds what [`Self::singular_part`] adds at t, its integral from `from` on, and the integral of that.
+    pub fn singular_motion(&self, memory: &Memory, [from, t]: [f64; 2], out: [&mut [f64]; 3]) {
+        let alpha = memory.alpha();
+        let along = |parts: &dyn Fn(f64) -> [f64; 3], since: f64| -> [f64; 3] {
+            let ([value, once, twice], [_, before, before_twice]) = (parts(t - since), parts(from - since));
+            [value, once - before, twice - before_twice - (t - from) * before]
+        };
+        let [value, once, twice] = out;
+        let mut add_each = |factors: [f64; 3], take: &dyn Fn(f64, &mut [f64])| {
+            for (factor, out) in factors.into_iter().zip([&mut *value, &mut *once, &mut *twice]) {
+                take(factor, out);
+            }
+        };
+        for jump in &self.jumps {
+            add_each(along(&|age| kernels(alpha, age), jump.t), &|factor, out| jump.add(factor, out));
+        }
+        if let Some(by_order) = &self.by_order
+            && memory.is_singular()
+        {
+            let size = memory.singular_jump();
+            let factors = along(&|age| by_order.kernels(kernels(alpha, age), age), 0.0);
+            add_each(factors, &|factor, out| add(out, size * factor, &self.alpha));
+        }
+    }
+
     /// Adds what stands for singular parts at the nodes of a step, s rows of P.
     pub(super) fn add_singular(&self, memory: &Memory, step: &TangentStep, singular: Singular, out: &mut [f64]) {
         let (start, count) = (&step.start, step.nodes.count());
@@ -136,6 +171,14 @@ impl MemoryTangent {
             by_order.slow.add_jump(jump, age);
         }
     }
+}
+
+/// t^{n−α}/Γ(n+1−α), n = 0, 1, 2: t^−α/Γ(1−α) and its integrals.
+fn kernels(alpha: f64, t: f64) -> [f64; 3] {
+    std::array::from_fn(|n| {
+        let n = n as f64;
+        if t == 0.0 && n > 0.0 { 0.0 } else { t.powf(n - alpha) * reciprocal_gamma(n + 1.0 - alpha) }
+    })
 }
 
 /// σ of [`Memory::singular_moments`] for x(0) = 1, `since` after the jump.

@@ -198,7 +198,7 @@ impl MemoryTangent {
             piece: Columns::new(parameters, 4),
             by_order: None,
         };
-        tangent.start_jump(memory, seeds.jump);
+        tangent.jump_at_start(memory, seeds.jump);
         tangent.open(memory);
         Ok(tangent)
     }
@@ -207,11 +207,11 @@ impl MemoryTangent {
     pub fn begin(&mut self, memory: &Memory, origin: &[f64]) {
         self.origin.copy_from_slice(origin);
         self.jumps.clear();
-        self.start_jump(memory, origin);
+        self.jump_at_start(memory, origin);
     }
 
     /// What of x jumps at t = 0 changes by so much.
-    fn start_jump(&mut self, memory: &Memory, jump: &[f64]) {
+    fn jump_at_start(&mut self, memory: &Memory, jump: &[f64]) {
         let is_singular = memory.is_fractional() && memory.kind() == Kind::RiemannLiouville;
         if is_singular && jump.iter().any(|jump| *jump != 0.0) {
             self.jumps.push(Jump::of_start(jump));

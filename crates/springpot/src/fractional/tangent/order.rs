@@ -185,6 +185,13 @@ impl ByOrder {
         self.digamma[0] - 1.0 / (1.0 - self.alpha) - t.ln()
     }
 
+    /// ∂/∂α of `kernels` = t^{n−α}/Γ(n+1−α), n = 0, 1, 2.
+    pub(super) fn kernels(&self, kernels: [f64; 3], t: f64) -> [f64; 3] {
+        let [first, second, ..] = self.digamma;
+        let digamma = [first - 1.0 / (1.0 - self.alpha), first, second];
+        std::array::from_fn(|n| if kernels[n] == 0.0 { 0.0 } else { kernels[n] * (digamma[n] - t.ln()) })
+    }
+
     /// ψ(2−α).
     pub(super) fn digamma(&self) -> f64 {
         self.digamma[0]

@@ -278,6 +278,22 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
         self.by_columns().into_iter().for_each(|columns| columns.at(when, at, state, told, own, sum));
     }
 
+    /// Adds what changes of [`Response::singular`] at the nodes of a step.
+    fn vary_singular(&self, _: &Step, _: StateRef, _: &StepVariation, _: VariationRef, _forces: &mut [f64]) {}
+
+    /// Adds what changes of the share of singular starts in F at the time of `at`, of its integral since `from`, and of the integral of that; the
+    /// inputs count as those of `at`.
+    fn vary_singularity(
+        &self,
+        _from: f64,
+        _at: &Point,
+        _: StateRef,
+        _: &PointVariation,
+        _: VariationRef,
+        _sums: [&mut [f64]; 3],
+    ) {
+    }
+
     /// Rules over the inputs, to hold at every time.
     ///
     /// # Errors

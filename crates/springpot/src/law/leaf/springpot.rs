@@ -161,7 +161,12 @@ impl Springpot {
         let own = |j: usize| {
             affine.stroke[i][j] * (step.stroke[j + 1] - step.stroke[0]) + affine.rate[i][j] * step.rate[j + 1]
         };
-        affine.history[i] + (0..step.nodes.count()).map(own).sum::<f64>()
+        let regular = affine.history[i] + (0..step.nodes.count()).map(own).sum::<f64>();
+        if !memory.is_singular() || step.course == Course::Given {
+            return regular;
+        }
+        let value = memory.singular_part(step.t + step.positions()[i] * step.h);
+        regular - value + memory.singular_moments(&start, step.nodes, step.places)[i]
     }
 }
 
@@ -398,7 +403,8 @@ impl Leaf for Springpot {
                 tangent.at(memory, &tangent_step, theta, &point, &changes, &mut derivatives);
                 let seen = self.at(step, theta, at, state);
                 let energy = memory.energy(&tangent_step.polynomial, theta, at.stroke, at.rate).stored;
-                (tangent_step, theta, seen.derivative, energy)
+                let singular = if memory.is_singular() { memory.singular_part(at.t) } else { 0.0 };
+                (tangent_step, theta, seen.derivative - singular, energy)
             }
             _ => {
                 tangent.now(memory, told.stroke, told.rate, &mut derivatives);
@@ -417,6 +423,47 @@ impl Leaf for Springpot {
         tangent.energy(memory, &tangent_step, theta, &point, &changes, &mut change);
         add(sum.stored, c, &stored);
         self.coefficient.add_change(at.inputs, followed, &own, energy, sum.stored);
+    }
+
+    fn vary_singular(&self, step: &Step, state: StateRef, told: &StepVariation, own: VariationRef, forces: &mut [f64]) {
+        let (memory, tangent) = (&state.memories[0], &own.memories[0]);
+        if !memory.is_singular() && !tangent.has_jumps() {
+            return;
+        }
+        let mut moved = vec![0.0; forces.len()];
+        tangent.singular_moments(memory, &Self::tangent_step(step), &mut moved);
+        let moments = memory.singular_moments(&step.start(), step.nodes, step.places);
+        for (i, (forces, moved)) in forces.chunks_exact_mut(own.count).zip(moved.chunks_exact(own.count)).enumerate() {
+            let inputs = step.point(i + 1).inputs;
+            add(forces, self.coefficient.at(inputs).value, moved);
+            let followed = self.coefficient.input.and_then(|input| told.input_at(i + 1, input, inputs.len()));
+            self.coefficient.add_change(inputs, followed.map(|[value, _]| value), &own, moments[i], forces);
+        }
+    }
+
+    fn vary_singularity(
+        &self,
+        from: f64,
+        at: &Point,
+        state: StateRef,
+        told: &PointVariation,
+        own: VariationRef,
+        sums: [&mut [f64]; 3],
+    ) {
+        let (memory, tangent, count) = (&state.memories[0], &own.memories[0], own.count);
+        if !memory.is_singular() && !tangent.has_jumps() {
+            return;
+        }
+        let mut moved = [(); 3].map(|()| vec![0.0; count]);
+        let [value, once, twice] = &mut moved;
+        tangent.singular_motion(memory, [from, at.t], [value, once, twice]);
+        let c = self.coefficient.at(at.inputs).value;
+        let followed = self.coefficient.input.and_then(|input| told.input(input, count)).map(|[value, _]| value);
+        let shares = memory.singular_motion(from, at.t);
+        for ((sum, moved), share) in sums.into_iter().zip(&moved).zip(shares) {
+            add(sum, c, moved);
+            self.coefficient.add_change(at.inputs, followed, &own, share, sum);
+        }
     }
 
     fn linearised(&self, at: &Point) -> Term {

@@ -65,6 +65,33 @@ pub(in crate::law) trait Vary: Part {
         self.parts().iter().for_each(|part| part.ask().vary_powers(step, state, told, own, sum));
     }
 
+    /// Adds what changes of its singular forces at the nodes ([`crate::law::Leaf::vary_singular`]).
+    fn vary_singular(
+        &self,
+        step: &Step,
+        state: &mut StateRef,
+        told: &StepVariation,
+        own: &mut VariationRef,
+        forces: &mut [f64],
+    ) {
+        self.parts().iter().for_each(|part| part.ask().vary_singular(step, state, told, own, forces));
+    }
+
+    /// Adds what changes of its singular forces and of their integrals ([`crate::law::Leaf::vary_singularity`]).
+    fn vary_singularity(
+        &self,
+        (from, at): (f64, &Point),
+        state: &mut StateRef,
+        told: &PointVariation,
+        own: &mut VariationRef,
+        sums: [&mut [f64]; 3],
+    ) {
+        let [value, once, twice] = sums;
+        for part in self.parts() {
+            part.ask().vary_singularity((from, at), state, told, own, [&mut *value, &mut *once, &mut *twice]);
+        }
+    }
+
     /// Adds what changes of it at one time.
     fn vary_at(
         &self,
@@ -138,6 +165,30 @@ impl Vary for LeafPart {
     ) {
         let size = self.leaf.size();
         self.leaf.vary_powers(step, state.take(size), told, own.take(self.number_count(), size), sum);
+    }
+
+    fn vary_singular(
+        &self,
+        step: &Step,
+        state: &mut StateRef,
+        told: &StepVariation,
+        own: &mut VariationRef,
+        forces: &mut [f64],
+    ) {
+        let size = self.leaf.size();
+        self.leaf.vary_singular(step, state.take(size), told, own.take(self.number_count(), size), forces);
+    }
+
+    fn vary_singularity(
+        &self,
+        (from, at): (f64, &Point),
+        state: &mut StateRef,
+        told: &PointVariation,
+        own: &mut VariationRef,
+        sums: [&mut [f64]; 3],
+    ) {
+        let size = self.leaf.size();
+        self.leaf.vary_singularity(from, at, state.take(size), told, own.take(self.number_count(), size), sums);
     }
 
     fn vary_at(

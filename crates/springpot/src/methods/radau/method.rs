@@ -195,6 +195,10 @@ impl Stepper for Radau {
         Err(SensitivityError::Unknown { what: format!("a motion without inertia at t = {} s", step.from) }.into())
     }
 
+    fn starts_with(&self) -> Option<&[f64]> {
+        Some(&self.step.origin.a)
+    }
+
     fn vary_within(&mut self, variation: &mut Variation, theta: f64, size: f64) {
         self.step.vary_within(variation, theta, size);
     }

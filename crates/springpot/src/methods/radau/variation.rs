@@ -9,7 +9,7 @@ use super::estimate::raw;
 use super::step::{EstimateScratch, RadauStep};
 use crate::collocation::radau::{A, A_SQUARED, GAMMA};
 use crate::collocation::{RADAU_NODES, STAGES, TABLEAU};
-use crate::equations::{Equations, Variation};
+use crate::equations::{Equations, ROW, Variation};
 
 /// What changes may err in a step, in units of what the motion may: so they come to the accuracy that the motion comes to in its own steps.
 const TANGENTS: f64 = 4.0;
@@ -18,6 +18,7 @@ impl RadauStep {
     /// Works out what changes over the step that was solved, of size `h`, where signals at its end are those at `t_end`; false where nothing does
     /// so in one way.
     pub(super) fn vary(&mut self, equations: &Equations, variation: &mut Variation, h: f64, t_end: f64) -> bool {
+        variation.share_forces(equations);
         let count = variation.count();
         let free = variation.of_run(equations.free());
         let elements = variation.elements.len();
@@ -73,13 +74,11 @@ impl RadauStep {
         for (blocks, of) in [(&mut *speeds, 0), (&mut *places, 1)] {
             blocks.clear();
             for block in free.iter().flat_map(|&k| k * count..(k + 1) * count) {
-                let told = if of == 0 {
-                    [&start.a, &stages[0].a, &stages[1].a, &stages[2].a]
-                } else {
-                    [&start.v, &stages[0].v, &stages[1].v, &stages[2].v]
+                let [first, nodes @ ..] = match of {
+                    0 => [0, 1, 2, 3].map(|i| variation.regular(i, block / count, block % count)),
+                    _ => [start, &stages[0], &stages[1], &stages[2]].map(|node| node.v[block]),
                 };
-                let [first, a, b, c] = told.map(|told| told[block]);
-                blocks.push(raw(h, first, [a, b, c]));
+                blocks.push(raw(h, first, nodes));
             }
         }
         // M r_v − h γ_0 K r_q.
@@ -114,13 +113,11 @@ impl RadauStep {
     /// What changes of the motion at θ of the step that was solved, of size `h`, into node [`ROW`].
     pub(super) fn vary_within(&self, variation: &mut Variation, theta: f64, h: f64) {
         let count = variation.count();
-        let [start, a, b, c, row] = &mut variation.nodes;
-        row.q.copy_from_slice(&start.q);
-        row.v.copy_from_slice(&start.v);
-        row.a.fill(0.0);
-        for k in 0..row.q.len() / count {
-            for block in k * count..(k + 1) * count {
-                let nodes = [start.a[block], a.a[block], b.a[block], c.a[block]];
+        variation.take_start(ROW);
+        for k in 0..variation.nv() {
+            for p in 0..count {
+                let nodes = [0, 1, 2, 3].map(|i| variation.regular(i, k, p));
+                let (block, row) = (k * count + p, &mut variation.nodes[ROW]);
                 let cubic = TABLEAU.rates.map(|line| line.iter().zip(nodes).map(|(l, a)| l * a).sum::<f64>());
                 let [value, once, twice] = integrals(cubic, theta);
                 row.a[block] = value;

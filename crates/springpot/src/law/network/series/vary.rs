@@ -439,6 +439,24 @@ impl Vary for Series {
         }
     }
 
+    /// What is singular inside is no share of the force of its own.
+    fn vary_singular(&self, _: &Step, state: &mut StateRef, _: &StepVariation, own: &mut VariationRef, _: &mut [f64]) {
+        self.pass(state);
+        own.take(number_count(self), self.size());
+    }
+
+    fn vary_singularity(
+        &self,
+        _: (f64, &Point),
+        state: &mut StateRef,
+        _: &PointVariation,
+        own: &mut VariationRef,
+        _: [&mut [f64]; 3],
+    ) {
+        self.pass(state);
+        own.take(number_count(self), self.size());
+    }
+
     fn vary_at(
         &self,
         (when, at): (When, &Point),
