@@ -159,6 +159,9 @@ fn parameters_of(plan: &Plan) -> Vec<String> {
     if !left_out.is_empty() {
         words.push(format!("no derivative is known of {}", left_out.join(", ")));
     }
+    if !sensitivity.no_gradient.is_empty() {
+        words.push(format!("no gradient is known of the metrics {}", sensitivity.no_gradient.join(", ")));
+    }
     words
 }
 

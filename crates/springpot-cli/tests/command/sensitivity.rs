@@ -132,8 +132,172 @@ fn what_cannot_be_differentiated_is_refused() {
             assert!(ended.said().contains(words), "{arguments:?}: {words:?} is not in {}", ended.stderr);
         }
     }
-    let kept = ["run", "arm.toml", "--sensitivity", "element.strut.k", "--checkpoint-every", "0.1"];
-    let ended = place.springpot(&kept);
-    assert_eq!(ended.code, Some(2), "{}", ended.stderr);
-    assert!(ended.said().contains("a checkpoint keeps no derivatives"), "{}", ended.stderr);
+}
+
+/// A metric of each kind that the arm has, of columns that `of` does not name too.
+const METRICS: &str = r#"
+[[metric]]
+name = "low"
+of = "q.q2"
+kind = "min"
+[[metric]]
+name = "peak"
+of = "strut.force"
+kind = "max"
+window = [0.05, 1]
+[[metric]]
+name = "end"
+of = "v.q2"
+kind = "final"
+[[metric]]
+name = "span"
+of = "q.q2"
+kind = "peak-to-peak"
+[[metric]]
+name = "mean"
+of = "strut.stored"
+kind = "mean"
+[[metric]]
+name = "rms"
+of = "strut.rate"
+kind = "rms"
+[[metric]]
+name = "settle"
+of = "q.q1"
+kind = "settling-time"
+band = "8 %"
+[[metric]]
+name = "past"
+of = "q.q2"
+kind = "overshoot"
+target = 0.5
+[[metric]]
+name = "ringing"
+of = "v.q2"
+kind = "frequency"
+band = 0.2
+[[metric]]
+name = "dying"
+of = "v.q2"
+kind = "log-decrement"
+band = 0.2
+[[metric]]
+name = "rest"
+of = "v.q2"
+kind = "residual-vibration"
+band = 0.2
+[[metric]]
+name = "work"
+of = "energy.actuators"
+kind = "final"
+"#;
+
+#[test]
+fn metrics_have_gradients() {
+    let place = Place::with(&format!("{ARM}{METRICS}"));
+    let by = ["element.strut.k", "constants.A", "robot.body.fore.mass"];
+    let quick = [
+        "--quiet",
+        "--no-figures",
+        "--set",
+        "time.end=1",
+        "--set",
+        "time.output_step=0.01",
+        "--set",
+        "solver.rtol=1e-9",
+    ];
+    let run = |more: &[&str]| place.done(&[&["run", "arm.toml"][..], &quick, more].concat());
+    run(&["--sensitivity", &by.join(","), "--set", "sensitivity.of=q.q1", "--out", "r"]);
+    let rows = place.table("r/results.csv").at("d(q.q1)/d(constants.A)");
+    assert_eq!(
+        place.read("r/results.csv").lines().next().unwrap().split(',').count(),
+        rows + 2,
+        "what metrics need is not written"
+    );
+    let table = place.table("r/gradient.csv");
+    let header = ["metric", "value", "unit", "parameter", "derivative", "derivative_unit", "elasticity"];
+    assert_eq!(place.read("r/gradient.csv").lines().next().unwrap().split(',').collect::<Vec<_>>(), header);
+    let (metrics, parameters) = (table.texts("metric"), table.texts("parameter"));
+    assert_eq!(table.rows.len(), 12 * 3);
+    let (found, values) = (table.numbers("derivative"), table.numbers("value"));
+    assert_eq!((table.texts("derivative_unit")[5], table.texts("derivative_unit")[0]), ("N/kg", "rad/(N/m)"));
+    let own = [2000.0, 2.0, 1.0];
+    for (k, (path, value)) in by.iter().zip(own).enumerate() {
+        let at = |steps: f64| {
+            run(&["--set", &format!("{path}={:?}", value * (1.0 + 1e-3 * steps)), "--out", "moved"]);
+            place.table("moved/metrics.csv").numbers("value")
+        };
+        let [a, b, c, d] = [1.0, -1.0, 2.0, -2.0].map(at);
+        for m in 0..11 {
+            let row = 3 * m + k;
+            assert_eq!(parameters[row], *path);
+            let truth = (8.0 * (a[m] - b[m]) - (c[m] - d[m])) / (12.0 * 1e-3 * value);
+            let size = truth.abs() + 1e-2 * values[row].abs() / value;
+            assert!((found[row] - truth).abs() < 1e-5 * size, "{} by {path}: {} for {truth}", metrics[row], found[row]);
+            let elasticity = table.numbers("elasticity")[row];
+            assert!((elasticity - value * found[row] / values[row]).abs() <= 1e-12 * elasticity.abs());
+        }
+    }
+    // No derivative is known of the work of actuators: nothing is made up, and it is said.
+    assert!(table.texts("derivative")[33..].iter().all(|cell| cell.is_empty()));
+    let checked = place.done(&["check", "arm.toml", "--sensitivity", "element.strut.k"]);
+    assert!(checked.stdout.contains("no gradient is known of the metrics work"), "{}", checked.stdout);
+}
+
+#[test]
+fn ranking_says_what_matters_most() {
+    let place = Place::with(&format!("{ARM}{TABLES}"));
+    place.done(&["run", "arm.toml", "--quiet", "--no-figures", "--out", "r", "--set", "output.columns=[\"q.q1\"]"]);
+    let (rows, table) = (place.table("r/results.csv"), place.table("r/ranking.csv"));
+    assert_eq!(table.rows.len(), 6);
+    let share = table.numbers("share");
+    assert!(share.windows(2).all(|pair| pair[0] >= pair[1]), "{share:?}");
+    let rms = |column: &str| {
+        let values = rows.numbers(column);
+        (values.iter().map(|y| y * y).sum::<f64>() / values.len() as f64).sqrt()
+    };
+    for (line, (column, parameter)) in table.texts("column").into_iter().zip(table.texts("parameter")).enumerate() {
+        let typical = if parameter == "k" { 2000.0 } else { 2.0 };
+        let changed = typical * rms(&format!("d({column})/d({parameter})"));
+        assert!((table.numbers("rms")[line] / changed - 1.0).abs() < 1e-12);
+        // The others are not written; their size counts all the same.
+        if column == "q.q1" {
+            assert!((share[line] * rms("q.q1") / changed - 1.0).abs() < 1e-12);
+        }
+        assert!(share[line].is_finite());
+    }
+}
+
+#[test]
+fn parts_and_threads_give_the_same_bytes() {
+    let sweep = "[[sweep]]\nparameter = \"element.strut.c\"\nvalues = [40, 60, 90]\n";
+    let place = Place::with(&format!("{ARM}{TABLES}{METRICS}{sweep}"));
+    place.done(&["run", "arm.toml", "--quiet", "--jobs", "1", "--out", "one"]);
+    place.done(&["run", "arm.toml", "--quiet", "--jobs", "3", "--out", "three"]);
+    for k in ["1", "2"] {
+        place.done(&["run", "arm.toml", "--quiet", "--shard", &format!("{k}/2"), "--out", &format!("part-{k}")]);
+    }
+    place.done(&["merge", "part-1", "part-2", "--out", "merged", "--quiet"]);
+    for name in ["results.csv", "summary.csv", "metrics.csv", "gradient.csv", "ranking.csv", "figures/by-k.svg"] {
+        let one = place.read(format!("one/{name}"));
+        assert!(one == place.read(format!("three/{name}")) && one == place.read(format!("merged/{name}")), "{name}");
+    }
+    assert_eq!(place.table("one/gradient.csv").texts("element.strut.c")[35..39], ["60"; 4]);
+    assert_eq!(place.record("one")["sensitivity"], place.record("merged")["sensitivity"]);
+    // A plain run into the same folder leaves none of them.
+    place.done(&[
+        "run",
+        "arm.toml",
+        "--quiet",
+        "--no-figures",
+        "--out",
+        "one",
+        "--set",
+        "sensitivity=",
+        "--set",
+        "parameter=",
+        "--set",
+        "figure=",
+    ]);
+    assert!(!place.files("one").iter().any(|name| ["gradient.csv", "ranking.csv"].contains(&&**name)));
 }

@@ -1,10 +1,25 @@
 //! Extremes and means.
 
 use super::series::Series;
+use super::slopes::Slopes;
 
 /// Smallest value; NaN without any.
 pub(super) fn min(series: &Series) -> f64 {
     series.y().iter().copied().fold(f64::NAN, f64::min)
+}
+
+/// Of the first row that has it.
+pub(super) fn min_slopes(series: &Series) -> Slopes {
+    row_with(series, min(series))
+}
+
+/// Of the first row that has it.
+pub(super) fn max_slopes(series: &Series) -> Slopes {
+    row_with(series, max(series))
+}
+
+fn row_with(series: &Series, value: f64) -> Slopes {
+    series.y().iter().position(|y| *y == value).map_or_else(Slopes::default, Slopes::of_row)
 }
 
 /// Largest value; NaN without any.
@@ -20,6 +35,26 @@ pub(super) fn mean(series: &Series) -> f64 {
 /// √(∫y² dt/(t_N − t_1)) by the trapezoid rule.
 pub(super) fn rms(series: &Series) -> f64 {
     over_time(series, |y| y * y).sqrt()
+}
+
+pub(super) fn mean_slopes(series: &Series) -> Slopes {
+    Slopes::of_rows(weights(series).enumerate())
+}
+
+/// Σ w y δy/rms: where all rows are 0 it bends.
+pub(super) fn rms_slopes(series: &Series) -> Slopes {
+    let rms = rms(series);
+    Slopes::of_rows(weights(series).zip(series.y()).map(|(weight, y)| weight * y / rms).enumerate())
+}
+
+/// The weights of the trapezoid rule over (t_N − t_1).
+fn weights(series: &Series) -> impl Iterator<Item = f64> {
+    let t = series.t();
+    let last = t.len().saturating_sub(1);
+    (0..t.len()).map(move |k| match last {
+        0 => 1.0,
+        _ => 0.5 * (t[(k + 1).min(last)] - t[k.saturating_sub(1)]) / (t[last] - t[0]),
+    })
 }
 
 fn over_time(series: &Series, of: impl Fn(f64) -> f64) -> f64 {

@@ -7,6 +7,7 @@ mod later;
 mod levels;
 mod series;
 mod settling;
+mod slopes;
 mod swings;
 
 pub use later::{LaterError, Recomputed, Source};
@@ -34,6 +35,34 @@ pub fn value(metric: &Metric, t: &[f64], values: &[f64]) -> f64 {
     }
 }
 
+/// The derivatives of a metric where the values change by each of `changes`, row by row: exactly those of the number that [`value`] is, with the same
+/// rows at its extremes and within its band. NaN where the metric is, where a row that it rests on has none, and where it bends (the `rms` of zeros).
+pub fn gradient(metric: &Metric, t: &[f64], values: &[f64], changes: &[&[f64]]) -> Vec<f64> {
+    let series = Series::new(t, values, metric.window);
+    let slopes = match metric.kind {
+        MetricKind::Min => levels::min_slopes(&series),
+        MetricKind::Max => levels::max_slopes(&series),
+        MetricKind::Final => series.last_slopes(),
+        MetricKind::PeakToPeak => levels::max_slopes(&series) - levels::min_slopes(&series),
+        MetricKind::Mean => levels::mean_slopes(&series),
+        MetricKind::Rms => levels::rms_slopes(&series),
+        MetricKind::SettlingTime => settling::slopes(&series, metric),
+        MetricKind::Overshoot => swings::overshoot_slopes(&series, metric),
+        MetricKind::Frequency => swings::frequency_slopes(&series, metric),
+        MetricKind::LogDecrement => swings::log_decrement_slopes(&series, metric),
+        MetricKind::ResidualVibration => swings::residual_slopes(&series, metric),
+    };
+    if !value(metric, t, values).is_finite() {
+        return vec![f64::NAN; changes.len()];
+    }
+    let rows = series::rows_of(t, values, metric.window);
+    changes.iter().map(|change| slopes.along(|k| change[rows[k]])).collect()
+}
+
+/// The columns of gradient.csv behind the swept parameters.
+pub(crate) const GRADIENT_COLUMNS: [&str; 7] =
+    ["metric", "value", "unit", "parameter", "derivative", "derivative_unit", "elasticity"];
+
 /// The columns of metrics.csv behind the swept parameters.
 pub(crate) const COLUMNS: [&str; 4] = ["metric", "column", "value", "unit"];
 
@@ -48,4 +77,88 @@ pub(crate) fn push_line(text: &mut String, lead: &str, metric: &Metric, column: 
     text.push(',');
     push_text(text, metric.kind.unit(&column.unit));
     text.push('\n');
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use springpot_scenario::Band;
+
+    const KINDS: [MetricKind; 11] = [
+        MetricKind::Min,
+        MetricKind::Max,
+        MetricKind::Final,
+        MetricKind::PeakToPeak,
+        MetricKind::Mean,
+        MetricKind::Rms,
+        MetricKind::SettlingTime,
+        MetricKind::Overshoot,
+        MetricKind::Frequency,
+        MetricKind::LogDecrement,
+        MetricKind::ResidualVibration,
+    ];
+
+    fn metric(kind: MetricKind, band: Option<Band>, target: Option<f64>) -> Metric {
+        Metric { name: "m".to_owned(), of: "y".to_owned(), kind, window: Some([0.05, 3.9]), band, target }
+    }
+
+    /// Times that are not even, and a swing that dies away; every seventh row is empty.
+    fn swing(phase: f64) -> (Vec<f64>, Vec<f64>) {
+        let t: Vec<f64> = (0..97).map(|k| 0.04 * f64::from(k) + 0.012 * (1.7 * f64::from(k)).sin()).collect();
+        let y = |(k, t): (usize, &f64)| {
+            if k % 7 == 3 { f64::NAN } else { 1.0 - (-0.6 * t).exp() * (5.3 * t + phase).cos() }
+        };
+        let y = t.iter().enumerate().map(y).collect();
+        (t, y)
+    }
+
+    #[test]
+    fn gradients_are_those_of_the_numbers() {
+        for (phase, kind) in [0.0, 0.7, 2.0].into_iter().flat_map(|phase| KINDS.map(|kind| (phase, kind))) {
+            let (t, y) = swing(phase);
+            let change: Vec<f64> = t.iter().map(|t| (3.1 * t).sin() + 0.4 * t - 0.3).collect();
+            for (band, target) in [
+                (None, None),
+                (Some(Band::Share(0.1)), None),
+                (Some(Band::Share(0.1)), Some(0.99)),
+                (Some(Band::Width(0.12)), Some(1.0)),
+            ] {
+                let metric = metric(kind, band, target);
+                let found = gradient(&metric, &t, &y, &[&change])[0];
+                let at = |step: f64| {
+                    let moved: Vec<f64> = y.iter().zip(&change).map(|(y, change)| y + step * change).collect();
+                    value(&metric, &t, &moved)
+                };
+                if at(0.0).is_nan() {
+                    assert!(found.is_nan());
+                    continue;
+                }
+                let step = 1e-6;
+                let truth = (8.0 * (at(step) - at(-step)) - (at(2.0 * step) - at(-2.0 * step))) / (12.0 * step);
+                let size = truth.abs().max(at(0.0).abs());
+                assert!((found - truth).abs() < 1e-7 * size, "{kind:?} {band:?} {target:?}: {found} for {truth}");
+                assert!(size > 0.0, "{kind:?} of a swing is not 0");
+            }
+        }
+    }
+
+    #[test]
+    fn gradients_are_empty_where_there_is_none() {
+        let (t, y) = swing(0.0);
+        // A row without a derivative matters where the metric rests on it, and only there.
+        let mut change = vec![1.0; t.len()];
+        let largest =
+            (0..t.len()).filter(|k| t[*k] > 0.05 && y[*k].is_finite()).max_by(|a, b| y[*a].total_cmp(&y[*b])).unwrap();
+        change[largest] = f64::NAN;
+        let of = |kind| gradient(&metric(kind, None, None), &t, &y, &[&change])[0];
+        assert!(of(MetricKind::Max).is_nan() && of(MetricKind::Mean).is_nan());
+        assert_eq!((of(MetricKind::Min), of(MetricKind::Final)), (1.0, 1.0));
+        // What has no value has no gradient, and the rms of zeros bends.
+        let still = vec![0.0; t.len()];
+        let ones = vec![1.0; t.len()];
+        for kind in [MetricKind::Frequency, MetricKind::LogDecrement, MetricKind::Rms] {
+            assert!(gradient(&metric(kind, None, None), &t, &still, &[&ones])[0].is_nan(), "{kind:?}");
+        }
+        assert_eq!(gradient(&metric(MetricKind::Rms, None, None), &t, &still, &[&still]), [0.0]);
+    }
 }

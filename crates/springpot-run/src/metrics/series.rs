@@ -1,5 +1,6 @@
 //! The rows that a metric is taken from.
 
+use super::slopes::Slopes;
 use crate::sweep::is_within;
 use springpot_scenario::{Band, Metric};
 
@@ -42,6 +43,10 @@ impl Series {
         self.last
     }
 
+    pub(super) fn last_slopes(&self) -> Slopes {
+        self.y.len().checked_sub(1).map_or_else(Slopes::default, Slopes::of_row)
+    }
+
     /// Where the column is to go: as written, or the last value that there is; NaN without any.
     pub(super) fn target(&self, metric: &Metric) -> f64 {
         metric.target.or(self.y.last().copied()).unwrap_or(f64::NAN)
@@ -52,6 +57,15 @@ impl Series {
         self.y.first().map_or(f64::NAN, |first| (first - self.target(metric)).abs())
     }
 
+    pub(super) fn target_slopes(&self, metric: &Metric) -> Slopes {
+        if metric.target.is_some() { Slopes::default() } else { self.last_slopes() }
+    }
+
+    pub(super) fn way_slopes(&self, metric: &Metric) -> Slopes {
+        let Some(first) = self.y.first() else { return Slopes::default() };
+        (Slopes::of_row(0) - self.target_slopes(metric)) * (first - self.target(metric)).signum()
+    }
+
     /// The band, in the unit of the column, where the metric says one.
     pub(super) fn band(&self, metric: &Metric) -> Option<f64> {
         metric.band.map(|band| match band {
@@ -59,6 +73,12 @@ impl Series {
             Band::Share(share) => share * self.way(metric),
         })
     }
+}
+
+/// Which rows of a case the values of its [`Series`] are.
+pub(super) fn rows_of(t: &[f64], values: &[f64], window: Option<[f64; 2]>) -> Vec<usize> {
+    let is_one = |k: &usize| values[*k].is_finite() && window.is_none_or(|window| is_within(window, t[*k]));
+    (0..t.len().min(values.len())).filter(is_one).collect()
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
 //! Settling time.
 
 use super::series::Series;
-use springpot_scenario::Metric;
+use super::slopes::Slopes;
+use springpot_scenario::{Band, Metric};
 
 /// The band of those that say none, as a share of |y_0 − target|.
 const BAND: f64 = 0.02;
@@ -9,20 +10,42 @@ const BAND: f64 = 0.02;
 /// Time from the start of the window to the straight-line entry into the band |y − target| ≤ band after the last row outside of it; 0
 /// where no row is outside, NaN where the last one is.
 pub(super) fn time(series: &Series, metric: &Metric) -> f64 {
-    let (t, y, target) = (series.t(), series.y(), series.target(metric));
-    let band = series.band(metric).unwrap_or_else(|| BAND * series.way(metric));
-    let is_outside = |y: &f64| (y - target).abs() > band;
-    let Some(out) = y.iter().rposition(is_outside) else { return if y.is_empty() { f64::NAN } else { 0.0 } };
+    let (t, y) = (series.t(), series.y());
+    let Some((out, edge)) = entry(series, metric) else { return if y.is_empty() { f64::NAN } else { 0.0 } };
     let Some(&inside) = y.get(out + 1) else { return f64::NAN };
-    let edge = target + band.copysign(y[out] - target);
     let share = ((y[out] - edge) / (y[out] - inside)).clamp(0.0, 1.0);
     t[out] + share * (t[out + 1] - t[out]) - series.start()
+}
+
+/// The last row outside, and the edge that is then passed; `None` where no row is.
+fn entry(series: &Series, metric: &Metric) -> Option<(usize, f64)> {
+    let (y, target) = (series.y(), series.target(metric));
+    let band = series.band(metric).unwrap_or_else(|| BAND * series.way(metric));
+    let out = y.iter().rposition(|y| (y - target).abs() > band)?;
+    Some((out, target + band.copysign(y[out] - target)))
+}
+
+/// The line between the two rows and the edge move.
+pub(super) fn slopes(series: &Series, metric: &Metric) -> Slopes {
+    let (t, y) = (series.t(), series.y());
+    let Some((out, edge)) = entry(series, metric) else { return Slopes::default() };
+    let Some(&inside) = y.get(out + 1) else { return Slopes::default() };
+    let share_of_way = match metric.band {
+        None => BAND,
+        Some(Band::Share(share)) => share,
+        Some(Band::Width(_)) => 0.0,
+    };
+    let side = (y[out] - series.target(metric)).signum();
+    let edge_slopes = series.target_slopes(metric) + series.way_slopes(metric) * (share_of_way * side);
+    let (drop, share) = (y[out] - inside, (y[out] - edge) / (y[out] - inside));
+    let fall = Slopes::of_row(out) - Slopes::of_row(out + 1);
+    (Slopes::of_row(out) - edge_slopes - fall * share) * ((t[out + 1] - t[out]) / drop)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use springpot_scenario::{Band, MetricKind};
+    use springpot_scenario::MetricKind;
 
     fn metric(band: Option<Band>, target: Option<f64>) -> Metric {
         let (name, of) = ("settle".to_owned(), "y".to_owned());

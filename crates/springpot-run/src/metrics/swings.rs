@@ -4,6 +4,7 @@
 //! points at τ_1 … τ_N have N − 1 swings S_1 … S_{N−1}.
 
 use super::series::Series;
+use super::slopes::Slopes;
 use springpot_scenario::Metric;
 
 /// The band of those that say none, as a share of the range.
@@ -14,6 +15,8 @@ const BAND: f64 = 1e-3;
 struct Turn {
     t: f64,
     y: f64,
+    /// The row.
+    row: usize,
 }
 
 /// The largest excess over the target, at a row or a turning point, as a fraction of |target − y_0|; 0 where it stays on its side, NaN where it
@@ -26,6 +29,29 @@ pub(super) fn overshoot(series: &Series, metric: &Metric) -> f64 {
     series.y().iter().copied().chain(turns).map(past).fold(0.0, f64::max) / way
 }
 
+/// Of the row or turning point that is furthest past, and of the way.
+pub(super) fn overshoot_slopes(series: &Series, metric: &Metric) -> Slopes {
+    let (way, target) = (series.way(metric), series.target(metric));
+    let Some(first) = series.y().first().filter(|_| way > 0.0) else { return Slopes::default() };
+    let side = (target - first).signum();
+    let past = |y: f64| (y - target) * side;
+    let largest = overshoot(series, metric) * way;
+    if largest <= 0.0 {
+        return Slopes::default();
+    }
+    let turns = turns(series, metric);
+    let turn = turns.iter().max_by(|one, other| past(one.y).total_cmp(&past(other.y)));
+    let rows = series.y().iter().enumerate();
+    let row = rows.max_by(|(_, one), (_, other)| past(**one).total_cmp(&past(**other))).map(|(row, y)| (row, *y));
+    let furthest = match (turn, row) {
+        (Some(turn), Some((_, y))) if past(turn.y) >= past(y) => value_slopes(series, turn),
+        (_, Some((row, _))) => Slopes::of_row(row),
+        (_, None) => Slopes::default(),
+    };
+    let excess = (furthest - series.target_slopes(metric)) * side;
+    (excess - series.way_slopes(metric) * (largest / way)) * (1.0 / way)
+}
+
 /// (N − 1)/(2(τ_N − τ_1)), Hz; NaN below two turning points.
 pub(super) fn frequency(series: &Series, metric: &Metric) -> f64 {
     let turns = turns(series, metric);
@@ -33,11 +59,40 @@ pub(super) fn frequency(series: &Series, metric: &Metric) -> f64 {
     (turns.len() - 1) as f64 / (2.0 * (last.t - first.t))
 }
 
+pub(super) fn frequency_slopes(series: &Series, metric: &Metric) -> Slopes {
+    let turns = turns(series, metric);
+    let [first, .., last] = &turns[..] else { return Slopes::default() };
+    let over = (turns.len() - 1) as f64 / (2.0 * (last.t - first.t).powi(2));
+    (time_slopes(series, first) - time_slopes(series, last)) * over
+}
+
 /// 2 ln(S_1/S_{N−1})/(N − 2); NaN below three turning points.
 pub(super) fn log_decrement(series: &Series, metric: &Metric) -> f64 {
     let swings = swings(&turns(series, metric));
     let [first, .., last] = &swings[..] else { return f64::NAN };
     2.0 * (first / last).ln() / (swings.len() - 1) as f64
+}
+
+pub(super) fn log_decrement_slopes(series: &Series, metric: &Metric) -> Slopes {
+    let turns = turns(series, metric);
+    let Some(last) = turns.len().checked_sub(1).filter(|last| *last > 1) else { return Slopes::default() };
+    let [first, end] = [0, last - 1].map(|k| of_log(series, &turns[k], &turns[k + 1]));
+    (first - end) * (2.0 / (last - 1) as f64)
+}
+
+/// Of ln S between two turning points.
+fn of_log(series: &Series, from: &Turn, to: &Turn) -> Slopes {
+    (value_slopes(series, to) - value_slopes(series, from)) * (1.0 / (to.y - from.y))
+}
+
+/// Of the first swing that is the largest.
+pub(super) fn residual_slopes(series: &Series, metric: &Metric) -> Slopes {
+    let turns = turns(series, metric);
+    let swings = swings(&turns);
+    let largest = swings.iter().copied().fold(0.0, f64::max);
+    let Some(k) = swings.iter().position(|swing| *swing == largest) else { return Slopes::default() };
+    let rises = (turns[k + 1].y - turns[k].y).signum();
+    (value_slopes(series, &turns[k + 1]) - value_slopes(series, &turns[k])) * (0.5 * rises)
 }
 
 /// ½ max S; 0 where nothing swings, NaN where there is nothing.
@@ -83,20 +138,64 @@ fn turns(series: &Series, metric: &Metric) -> Vec<Turn> {
 
 /// The vertex of the parabola through a turning row and its neighbours; of rows that stay the middle one.
 fn refined(series: &Series, crest: usize) -> Turn {
-    let (t, y) = (series.t(), series.y());
+    let y = series.y();
     let same = y[crest..].iter().take_while(|other| **other == y[crest]).count();
     let k = crest + (same - 1) / 2;
-    let plain = Turn { t: t[k], y: y[k] };
-    let ([before, after], [to, from]) = ([t[k] - t[k - 1], t[k + 1] - t[k]], [y[k] - y[k - 1], y[k + 1] - y[k]]);
-    // Slopes of the chords; their difference is the curvature.
-    let [rise, fall] = [to / before, from / after];
-    let curvature = (fall - rise) / (before + after);
-    let slope = (rise * after + fall * before) / (before + after);
-    let shift = -0.5 * slope / curvature;
-    if curvature == 0.0 || !shift.is_finite() || shift < -before || shift > after {
-        return plain;
+    let plain = Turn { t: series.t()[k], y: y[k], row: k };
+    Parabola::at(series, k).map_or(plain, |Parabola { slope, shift, .. }| Turn {
+        t: plain.t + shift,
+        y: plain.y + 0.5 * slope * shift,
+        ..plain
+    })
+}
+
+/// y_k + slope τ + curvature τ² through a row and its neighbours, whose vertex is at τ = shift.
+struct Parabola {
+    slope: f64,
+    curvature: f64,
+    shift: f64,
+    /// Times to the neighbours.
+    before: f64,
+    after: f64,
+}
+
+impl Parabola {
+    /// `None` where it has no vertex between the neighbours.
+    fn at(series: &Series, k: usize) -> Option<Self> {
+        let (t, y) = (series.t(), series.y());
+        let ([before, after], [to, from]) = ([t[k] - t[k - 1], t[k + 1] - t[k]], [y[k] - y[k - 1], y[k + 1] - y[k]]);
+        // Slopes of the chords; their difference is the curvature.
+        let [rise, fall] = [to / before, from / after];
+        let curvature = (fall - rise) / (before + after);
+        let slope = (rise * after + fall * before) / (before + after);
+        let shift = -0.5 * slope / curvature;
+        let is_between = curvature != 0.0 && shift.is_finite() && shift >= -before && shift <= after;
+        is_between.then_some(Self { slope, curvature, shift, before, after })
     }
-    Turn { t: plain.t + shift, y: plain.y + 0.5 * slope * shift }
+
+    /// What slope and curvature change by with the three rows.
+    fn slopes(&self, k: usize) -> [Slopes; 2] {
+        let Self { before, after, .. } = *self;
+        let rise = (Slopes::of_row(k) - Slopes::of_row(k - 1)) * (1.0 / before);
+        let fall = (Slopes::of_row(k + 1) - Slopes::of_row(k)) * (1.0 / after);
+        let over = 1.0 / (before + after);
+        [(rise.clone() * after + fall.clone() * before) * over, (fall - rise) * over]
+    }
+}
+
+/// Of the value of a turning point: that of the parabola where its vertex is.
+fn value_slopes(series: &Series, turn: &Turn) -> Slopes {
+    let own = Slopes::of_row(turn.row);
+    let Some(parabola) = Parabola::at(series, turn.row) else { return own };
+    let [slope, curvature] = parabola.slopes(turn.row);
+    own + slope * parabola.shift + curvature * parabola.shift.powi(2)
+}
+
+/// Of the time of a turning point; that of a row stays.
+fn time_slopes(series: &Series, turn: &Turn) -> Slopes {
+    let Some(parabola) = Parabola::at(series, turn.row) else { return Slopes::default() };
+    let [slope, curvature] = parabola.slopes(turn.row);
+    (slope + curvature * (2.0 * parabola.shift)) * (-0.5 / parabola.curvature)
 }
 
 #[cfg(test)]

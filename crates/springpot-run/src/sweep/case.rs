@@ -55,6 +55,8 @@ struct Rest<'a> {
     summary: Section<'a, DiskFile>,
     events: Option<Section<'a, DiskFile>>,
     metrics: Option<Section<'a, DiskFile>>,
+    gradient: Option<Section<'a, DiskFile>>,
+    ranking: Option<Section<'a, DiskFile>>,
 }
 
 impl<'a> Sections<'a> {
@@ -66,7 +68,7 @@ impl<'a> Sections<'a> {
     /// Leaves them empty.
     pub(super) fn finish(self) -> io::Result<()> {
         self.rows.finish()?;
-        self.rest.write("", "", "")
+        self.rest.write("", "", &CaseMetrics::default())
     }
 }
 
@@ -76,13 +78,19 @@ impl<'a> Rest<'a> {
             summary: sweep.summary.section(index),
             events: sweep.events.as_ref().map(|events| events.section(index)),
             metrics: sweep.metrics.as_ref().map(|metrics| metrics.section(index)),
+            gradient: sweep.gradient.as_ref().map(|gradient| gradient.section(index)),
+            ranking: sweep.ranking.as_ref().map(|ranking| ranking.section(index)),
         }
     }
 
-    fn write(self, summary: &str, events: &str, metrics: &str) -> io::Result<()> {
+    fn write(self, summary: &str, events: &str, metrics: &CaseMetrics) -> io::Result<()> {
+        let [gradient, ranking] = &metrics.derivatives.lines;
+        let gradient = self.gradient.map(|section| (section, &**gradient));
+        let ranking = self.ranking.map(|section| (section, &**ranking));
         let events = self.events.map(|section| (section, events));
-        let metrics = self.metrics.map(|section| (section, metrics));
-        for (section, text) in [(self.summary, summary)].into_iter().chain(events).chain(metrics) {
+        let metrics = self.metrics.map(|section| (section, &*metrics.lines));
+        let others = events.into_iter().chain(metrics).chain(gradient).chain(ranking);
+        for (section, text) in [(self.summary, summary)].into_iter().chain(others) {
             section.write(text.as_bytes())?;
             section.finish()?;
         }
@@ -125,7 +133,7 @@ pub(super) fn run<'a>(sweep: &'a Sweep<'a>, index: usize, sections: Sections<'a>
         output.files.take().map_or(Ok(()), |files| files.end(&done, || sweep.sync()))
     })?;
     let Taken { statistics, events, kept, .. } = taken;
-    rest.write(&output::summary(sweep, index, &statistics), &events.lines, &ran.metrics.lines)?;
+    rest.write(&output::summary(sweep, index, &statistics), &events.lines, &ran.metrics)?;
     let (curves, events) = (kept.and_then(Kept::into_curves), events.happened);
     let Ran { report, error, interrupted, no_ledger, limits, metrics } = ran;
     Ok(Some(CaseResult { index, report, error, interrupted, wall, no_ledger, events, limits, curves, metrics }))
@@ -189,7 +197,7 @@ fn again(sweep: &Sweep, done: CaseDone, rows: Option<Sections>) -> io::Result<Ca
 /// Writes the lines of a case whose rows are written.
 fn settled(sweep: &Sweep, done: CaseDone, rest: Rest, kept: Option<Kept>) -> io::Result<CaseResult> {
     let lines = output::summary(sweep, done.index, &done.written.statistics);
-    rest.write(&lines, &done.written.events.lines, &done.metrics.lines)?;
+    rest.write(&lines, &done.written.events.lines, &done.metrics)?;
     let curves = kept.and_then(Kept::into_curves);
     let CaseDone { index, written, report, error, no_ledger, limits, metrics } = done;
     sweep.options.progress.rows.fetch_add(report.rows, Ordering::Relaxed);

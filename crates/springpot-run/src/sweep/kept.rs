@@ -5,7 +5,7 @@ use super::curve::KeptCurve;
 use super::metrics::{CaseMetrics, Watched};
 use super::wanted::Window;
 use crate::table::Totals;
-use springpot_scenario::MetricPlan;
+use springpot_scenario::Plan;
 use std::collections::BTreeMap;
 
 /// What figures draw of a case.
@@ -93,9 +93,9 @@ impl<'a> Kept<'a> {
         }
     }
 
-    /// The metrics `plans` of the case whose swept values are `lead`.
-    pub(super) fn metrics(&self, layout: &Layout, plans: &[MetricPlan], lead: &str) -> CaseMetrics {
-        self.watched.as_ref().map_or_else(CaseMetrics::default, |watched| watched.metrics(layout, plans, lead))
+    /// The metrics of the case whose swept values are `lead`.
+    pub(super) fn metrics(&self, layout: &Layout, plan: &Plan, lead: &str) -> CaseMetrics {
+        self.watched.as_ref().map_or_else(CaseMetrics::default, |watched| watched.metrics(layout, plan, lead))
     }
 
     /// Values of one row.

@@ -1,8 +1,9 @@
 //! Which columns are written, and which are kept in memory for figures and metrics.
 
 use super::curve::most_points;
+use super::derivatives::Differentiated;
 use super::wanted::{FigureData, Total, Wanted, WantedCurve, WantedMetric, WantedTotal};
-use crate::{figures, metrics};
+use crate::figures;
 use springpot::observe::Quantity;
 use springpot::table::Column;
 use springpot_scenario::{Cases, Plan, Refusals, SensitivityPlan};
@@ -23,6 +24,8 @@ pub struct Layout {
     metrics: Vec<WantedMetric>,
     /// The derivatives of the time of an event.
     times: Vec<Column>,
+    /// What is differentiated, where anything is.
+    differentiated: Option<Differentiated>,
 }
 
 impl Layout {
@@ -53,11 +56,20 @@ impl Layout {
         let written = parameters.chain(selected.iter().map(|&k| wanted.columns()[k].clone())).collect();
         let figures =
             cases.figures().iter().map(|figure| figures::data(cases, figure, &mut wanted)).collect::<Result<_, _>>()?;
-        let metrics = cases.metrics().iter().map(|plan| wanted.metric(plan)).collect::<Result<_, _>>()?;
+        let mut metrics =
+            cases.metrics().iter().map(|plan| wanted.metric(plan)).collect::<Result<Vec<WantedMetric>, _>>()?;
+        let sensitivity = plan.sensitivity.as_ref().filter(|sensitivity| sensitivity.is_asked());
+        let differentiated = sensitivity.map(|sensitivity| {
+            let first = wanted.columns().len() - sensitivity.columns.len();
+            for metric in &mut metrics {
+                let places = sensitivity.places(&metric.first.of);
+                metric.changes = places.map(|places| places.into_iter().map(|k| wanted.keep(first + k)).collect());
+            }
+            Differentiated::of(sensitivity, wanted.columns(), &selected)
+        });
         let events: Vec<String> = plan.events.iter().map(|plan| plan.event.name.clone()).collect();
-        let sensitivity = plan.sensitivity.iter().filter(|sensitivity| sensitivity.is_asked() && !events.is_empty());
-        let times = sensitivity.flat_map(SensitivityPlan::times).collect();
-        Ok(Self { written, swept, selected, wanted, figures, events, metrics, times })
+        let times = sensitivity.filter(|_| !events.is_empty()).into_iter().flat_map(SensitivityPlan::times).collect();
+        Ok(Self { written, swept, selected, wanted, figures, events, metrics, times, differentiated })
     }
 
     /// Columns of results.csv.
@@ -72,9 +84,7 @@ impl Layout {
 
     /// Columns of summary.csv.
     pub(super) fn summary_columns(&self) -> Vec<Column> {
-        let plain = |name: &str| Column::new(name, "", "");
-        let swept = self.written[..self.swept].iter().cloned();
-        swept.chain(["column", "unit", "min", "max", "rms"].map(plain)).collect()
+        self.columns_with(&["column", "unit", "min", "max", "rms"])
     }
 
     /// The names of the events, in the order of the scenario.
@@ -98,10 +108,25 @@ impl Layout {
         self.metrics.first().map(|metric| metric.t)
     }
 
-    /// Columns of metrics.csv.
-    pub(super) fn metric_columns(&self) -> Vec<Column> {
+    /// What is differentiated, where anything is.
+    pub(super) fn differentiated(&self) -> Option<&Differentiated> {
+        self.differentiated.as_ref()
+    }
+
+    /// Whether there are gradients of metrics.
+    pub(super) fn has_gradients(&self) -> bool {
+        self.differentiated.is_some() && !self.metrics.is_empty()
+    }
+
+    /// Columns of a file with these behind the swept parameters.
+    pub(super) fn columns_with(&self, names: &[&str]) -> Vec<Column> {
         let swept = self.written[..self.swept].iter().cloned();
-        swept.chain(metrics::COLUMNS.map(|name| Column::new(name, "", ""))).collect()
+        swept.chain(names.iter().map(|name| Column::new(*name, "", ""))).collect()
+    }
+
+    /// How many values of a row are columns of the run: behind them stands what metrics alone need.
+    pub(super) fn width(&self) -> usize {
+        self.wanted.columns().len()
     }
 
     /// Columns of events.csv: all of the run.

@@ -1,9 +1,11 @@
 //! The metrics of a case: its columns while it runs, its lines at the end.
 
 use super::Layout;
+use super::derivatives::{CaseDerivatives, Measured};
+use super::wanted::WantedMetric;
 use crate::metrics::{push_line, value};
 use serde::{Deserialize, Serialize};
-use springpot_scenario::MetricPlan;
+use springpot_scenario::Plan;
 
 /// What the metrics of a case are.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -14,6 +16,8 @@ pub struct CaseMetrics {
     pub(super) lines: String,
     /// The metrics as JSON, where they are not those of the first case.
     pub(super) own: Option<String>,
+    /// What is worked out of its derivatives.
+    pub derivatives: CaseDerivatives,
 }
 
 /// The columns that metrics are taken from, over all rows of a case.
@@ -23,8 +27,8 @@ pub(super) struct Watched {
     places: Vec<usize>,
     /// Their values.
     columns: Vec<Vec<f64>>,
-    /// For each metric the index of its column.
-    of: Vec<usize>,
+    /// For each metric the index of its column, and of its derivatives.
+    of: Vec<(usize, Option<Vec<usize>>)>,
 }
 
 impl Watched {
@@ -32,14 +36,16 @@ impl Watched {
     pub(super) fn of(layout: &Layout) -> Option<Self> {
         let wanted = layout.metrics();
         let mut places = vec![layout.kept_time()?];
-        let of = wanted.iter().map(|metric| {
-            let known = places.iter().position(|place| *place == metric.place);
-            known.unwrap_or_else(|| {
-                places.push(metric.place);
+        let mut find = |place: usize| {
+            places.iter().position(|known| *known == place).unwrap_or_else(|| {
+                places.push(place);
                 places.len() - 1
             })
-        });
-        let of = of.collect();
+        };
+        let changes = |metric: &WantedMetric, find: &mut dyn FnMut(usize) -> usize| {
+            metric.changes.as_ref().map(|changes| changes.iter().map(|place| find(*place)).collect())
+        };
+        let of = wanted.iter().map(|metric| (find(metric.place), changes(metric, &mut find))).collect();
         Some(Self { columns: vec![Vec::new(); places.len()], places, of })
     }
 
@@ -50,17 +56,25 @@ impl Watched {
         }
     }
 
-    /// The metrics `plans` of the case whose swept values are `lead`.
-    pub(super) fn metrics(&self, layout: &Layout, plans: &[MetricPlan], lead: &str) -> CaseMetrics {
-        let mut metrics = CaseMetrics::default();
+    /// The metrics of the case whose swept values are `lead`.
+    pub(super) fn metrics(&self, layout: &Layout, plan: &Plan, lead: &str) -> CaseMetrics {
+        let (plans, mut metrics) = (&plan.metrics, CaseMetrics::default());
         let t = &self.columns[0];
         if t.is_empty() {
             return metrics;
         }
-        for ((plan, &at), wanted) in plans.iter().zip(&self.of).zip(layout.metrics()) {
-            let value = value(&plan.metric, t, &self.columns[at]);
+        for ((plan, (at, _)), wanted) in plans.iter().zip(&self.of).zip(layout.metrics()) {
+            let value = value(&plan.metric, t, &self.columns[*at]);
             push_line(&mut metrics.lines, lead, &plan.metric, &wanted.column, value);
             metrics.values.push(value);
+        }
+        if let Some(sensitivity) = &plan.sensitivity {
+            let column = |at: &usize| &self.columns[*at][..];
+            let columns = self.of.iter().map(|(at, changes)| {
+                (column(at), changes.as_ref().map(|changes| changes.iter().map(column).collect()))
+            });
+            let measured = Measured { lead, t, columns: columns.collect() };
+            metrics.derivatives.gradients(layout, (plans, sensitivity), &measured, &metrics.values);
         }
         let is_own = plans.iter().zip(layout.metrics()).any(|(plan, wanted)| plan.metric != wanted.first);
         let all: Vec<_> = plans.iter().map(|plan| &plan.metric).collect();

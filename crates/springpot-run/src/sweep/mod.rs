@@ -3,6 +3,7 @@
 mod case;
 mod checkpoint;
 mod curve;
+mod derivatives;
 mod events;
 mod kept;
 mod layout;
@@ -19,6 +20,7 @@ mod wanted;
 pub use case::CaseResult;
 pub use checkpoint::{CheckpointError, Checkpoints, MergeError, Origin, Shards, Unfinished};
 pub use curve::{KeptCurve, MAX_CURVES_IN_ALL, most_points};
+pub use derivatives::{CaseDerivatives, Ranked};
 pub use events::Happened;
 pub use kept::CaseCurves;
 pub use layout::Layout;
@@ -31,11 +33,13 @@ pub(crate) use wanted::is_within;
 pub use wanted::{Abscissa, FigureCurve, FigureData, FigureTotal, LeftOut, MAX_CURVES, Total};
 pub(crate) use wanted::{Summed, Wanted};
 
+use crate::metrics::{COLUMNS as METRIC_COLUMNS, GRADIENT_COLUMNS};
 use crate::table::disk::DiskFile;
-use crate::table::folder::Folder;
+use crate::table::folder::{EVENTS, Folder, GRADIENT, METRICS, RANKING};
 use crate::table::ordered::Ordered;
 use crate::table::push_text;
 use case::Sections;
+use derivatives::RANKING_COLUMNS;
 use springpot::system::Stop;
 use springpot::table::Column;
 use springpot_scenario::{Cases, Refusals};
@@ -249,6 +253,10 @@ struct Sweep<'a> {
     events: Option<Ordered<DiskFile>>,
     /// Where there are metrics.
     metrics: Option<Ordered<DiskFile>>,
+    /// Where there are metrics and parameters.
+    gradient: Option<Ordered<DiskFile>>,
+    /// Where there are parameters.
+    ranking: Option<Ordered<DiskFile>>,
     /// The file of `rows`, to wait for the disk without keeping others from writing.
     file: DiskFile,
     /// The first case that has not ended.
@@ -269,20 +277,20 @@ impl<'a> Sweep<'a> {
         let first = options.checkpoints.and_then(Checkpoints::first);
         let mut summary = folder.create_summary()?;
         summary.write_all(header(&layout.summary_columns()).as_bytes())?;
-        let events = if layout.events().is_empty() {
-            None
-        } else {
-            let mut events = folder.create_events()?;
-            events.write_all(header(&layout.event_columns()).as_bytes())?;
-            Some(Ordered::new(events, usize::MAX).from_case(start))
+        // What is written at the end of each case, where there is any.
+        let mut beside = |is_there: bool, name: &str, columns: &dyn Fn() -> Vec<Column>| {
+            let begin = || {
+                let mut file = folder.create_beside(name)?;
+                file.write_all(header(&columns()).as_bytes())?;
+                Ok::<_, io::Error>(Ordered::new(file, usize::MAX).from_case(start))
+            };
+            is_there.then(begin).transpose()
         };
-        let metrics = if layout.metrics().is_empty() {
-            None
-        } else {
-            let mut metrics = folder.create_metrics()?;
-            metrics.write_all(header(&layout.metric_columns()).as_bytes())?;
-            Some(Ordered::new(metrics, usize::MAX).from_case(start))
-        };
+        let events = beside(!layout.events().is_empty(), EVENTS, &|| layout.event_columns())?;
+        let metrics = beside(!layout.metrics().is_empty(), METRICS, &|| layout.columns_with(&METRIC_COLUMNS))?;
+        let gradient = beside(layout.has_gradients(), GRADIENT, &|| layout.columns_with(&GRADIENT_COLUMNS))?;
+        let is_ranked = layout.differentiated().is_some();
+        let ranking = beside(is_ranked, RANKING, &|| layout.columns_with(&RANKING_COLUMNS))?;
         let rows = if first.is_some() {
             let mut rows = folder.reopen_rows()?;
             rows.seek(SeekFrom::End(0))?;
@@ -307,6 +315,8 @@ impl<'a> Sweep<'a> {
             summary: Ordered::new(summary, usize::MAX).from_case(start),
             events,
             metrics,
+            gradient,
+            ranking,
             first,
             begun,
             earlier_wall: options.checkpoints.map_or(Duration::ZERO, Checkpoints::earlier_wall)

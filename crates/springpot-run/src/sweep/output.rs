@@ -10,7 +10,7 @@ use crate::table::ordered::Section;
 use crate::table::{Statistics, push_fields, push_text};
 use springpot::driver::{Checkpoint, Watch};
 use springpot::system::System;
-use springpot_scenario::{MetricPlan, Plan};
+use springpot_scenario::Plan;
 use std::io;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
@@ -144,8 +144,8 @@ impl Sink for Output<'_> {
         files.keep(&state, || sweep.file.sync())
     }
 
-    fn metrics(&self, plans: &[MetricPlan]) -> CaseMetrics {
-        self.taken.metrics(plans)
+    fn metrics(&self, plan: &Plan) -> CaseMetrics {
+        self.taken.metrics(plan)
     }
 }
 

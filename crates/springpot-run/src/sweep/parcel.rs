@@ -12,7 +12,7 @@ use crate::trouble::Trouble;
 use serde::{Deserialize, Serialize};
 use springpot::driver::{Checkpoint, PassedLimit, Report, Watch};
 use springpot::system::{Stop, System};
-use springpot_scenario::{Cases, MetricPlan, Plan};
+use springpot_scenario::{Cases, Plan};
 use std::io;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -155,7 +155,7 @@ impl Parcel {
         (&self.done.written.events.lines, &self.done.written.events.happened)
     }
 
-    /// Statistics of the selected columns.
+    /// Statistics of the selected columns, and behind them of those whose size ranks parameters.
     pub fn statistics(&self) -> &[Statistics] {
         &self.done.written.statistics
     }
@@ -249,7 +249,7 @@ impl Sink for Memory<'_> {
         Ok(())
     }
 
-    fn metrics(&self, plans: &[MetricPlan]) -> CaseMetrics {
-        self.taken.metrics(plans)
+    fn metrics(&self, plan: &Plan) -> CaseMetrics {
+        self.taken.metrics(plan)
     }
 }

@@ -5,7 +5,7 @@ use super::metrics::CaseMetrics;
 use crate::trouble::Trouble;
 use springpot::driver::{self, Checkpoint, LimitWatch, PassedLimit, Report, Rows, Watch};
 use springpot::system::{RunError, Stop, System};
-use springpot_scenario::{Cases, MetricPlan, Plan};
+use springpot_scenario::{Cases, Plan};
 use std::io;
 use std::sync::atomic::Ordering;
 
@@ -23,7 +23,7 @@ pub(super) trait Sink {
     fn keep(&mut self, plan: &Plan, system: &System, watch: Watch, run: Checkpoint) -> io::Result<()>;
 
     /// What the metrics are of the rows so far.
-    fn metrics(&self, plans: &[MetricPlan]) -> CaseMetrics;
+    fn metrics(&self, plan: &Plan) -> CaseMetrics;
 }
 
 /// Where an earlier run left a case.
@@ -86,7 +86,7 @@ pub(super) fn simulate(
         Err(RunError::Output(error)) => return Err(error),
         Err(error) => (Some(Trouble::of(&error, &plan)), matches!(error, RunError::Interrupted { .. })),
     };
-    let (no_ledger, metrics) = (why_no_ledger(&system, &report), sink.metrics(&plan.metrics));
+    let (no_ledger, metrics) = (why_no_ledger(&system, &report), sink.metrics(&plan));
     Ok(Ran { report, error, interrupted, no_ledger, limits, metrics })
 }
 
@@ -129,9 +129,11 @@ impl Rows for CaseRows<'_> {
             return Ok(());
         }
         // Derivatives stand behind all else, those of the time first.
-        let told = self.plan.sensitivity.as_ref().map_or(0, |sensitivity| sensitivity.columns.len());
-        let (own, derivatives) = row.split_at(row.len() - told);
-        self.sink.event(self.system, event, &[own, later, derivatives].concat());
+        let told = self.plan.sensitivity.as_ref();
+        let [told, for_metrics] =
+            told.map_or([0; 2], |sensitivity| [sensitivity.columns.len(), sensitivity.for_metrics.len()]);
+        let (own, derivatives) = row.split_at(row.len() - told - for_metrics);
+        self.sink.event(self.system, event, &[own, later, &derivatives[..told]].concat());
         Ok(())
     }
 

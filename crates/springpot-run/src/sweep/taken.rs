@@ -6,7 +6,7 @@ use super::kept::Kept;
 use super::metrics::CaseMetrics;
 use crate::table::{Statistics, push_fields, push_number, push_text};
 use springpot::system::System;
-use springpot_scenario::{Cases, MetricPlan, SweptValue};
+use springpot_scenario::{Cases, Plan, SweptValue};
 
 /// Statistics, events, and what figures and metrics keep of a case.
 #[derive(Debug)]
@@ -15,6 +15,7 @@ pub(super) struct Taken<'a> {
     /// The swept values, which begin every row.
     pub(super) lead: String,
     pub(super) selected: Vec<usize>,
+    /// Of the selected columns, and of those beside them whose size is to be known.
     pub(super) statistics: Vec<Statistics>,
     pub(super) events: CaseEvents,
     pub(super) kept: Option<Kept<'a>>,
@@ -24,10 +25,11 @@ impl<'a> Taken<'a> {
     /// Nothing yet of case `index`.
     pub(super) fn of(cases: &Cases, layout: &'a Layout, index: usize) -> Self {
         let selected: Vec<usize> = layout.selected().map(|(k, _)| k).collect();
+        let beside = layout.differentiated().map_or(0, |differentiated| differentiated.beside.len());
         Self {
             layout,
             lead: lead(cases, index),
-            statistics: vec![Statistics::default(); selected.len()],
+            statistics: vec![Statistics::default(); selected.len() + beside],
             events: CaseEvents::default(),
             selected,
             kept: Kept::of(layout, index),
@@ -36,7 +38,8 @@ impl<'a> Taken<'a> {
 
     /// Takes a row; returns its values that figures and metrics keep.
     pub(super) fn row(&mut self, row: &[f64]) -> &[f64] {
-        for (statistics, &k) in self.statistics.iter_mut().zip(&self.selected) {
+        let beside = self.layout.differentiated().map_or(&[][..], |differentiated| &differentiated.beside);
+        for (statistics, &k) in self.statistics.iter_mut().zip(self.selected.iter().chain(beside)) {
             statistics.add(row[k]);
         }
         self.kept.as_mut().map_or(&[], |kept| kept.row(row))
@@ -47,10 +50,14 @@ impl<'a> Taken<'a> {
         self.events.take(system, &self.lead, event, row);
     }
 
-    /// What the metrics are of the rows so far.
-    pub(super) fn metrics(&self, plans: &[MetricPlan]) -> CaseMetrics {
+    /// What the metrics are of the rows so far, and what matters most.
+    pub(super) fn metrics(&self, plan: &Plan) -> CaseMetrics {
         let kept = self.kept.as_ref();
-        kept.map_or_else(CaseMetrics::default, |kept| kept.metrics(self.layout, plans, &self.lead))
+        let mut metrics = kept.map_or_else(CaseMetrics::default, |kept| kept.metrics(self.layout, plan, &self.lead));
+        if let Some(sensitivity) = &plan.sensitivity {
+            metrics.derivatives.rank(self.layout, sensitivity, &self.statistics, &self.lead);
+        }
+        metrics
     }
 }
 

@@ -135,6 +135,8 @@ pub(super) struct WantedMetric {
     pub(super) t: usize,
     pub(super) place: usize,
     pub(super) column: Column,
+    /// Where the derivatives of its column by each parameter are kept, where they are known.
+    pub(super) changes: Option<Vec<usize>>,
 }
 
 /// Why a figure is not drawn.
@@ -223,7 +225,12 @@ impl Wanted {
         };
         let column = self.columns[at].clone();
         let (t, place) = (place(&mut self.kept, t), place(&mut self.kept, at));
-        Ok(WantedMetric { first: plan.metric.clone(), t, place, column })
+        Ok(WantedMetric { first: plan.metric.clone(), t, place, column, changes: None })
+    }
+
+    /// Keeps a place in a row, whether or not a column of the run stands there.
+    pub(super) fn keep(&mut self, at: usize) -> usize {
+        place(&mut self.kept, at)
     }
 
     /// A column as a figure draws it.

@@ -8,12 +8,14 @@ mod owned;
 mod settle;
 
 pub(crate) use lock::is_held;
-pub(crate) use owned::{CASE, HEAD, JOURNAL, PART, RUNNING, UNFINISHED, checkpoint_folder};
+pub(crate) use owned::{
+    CASE, EVENTS, GRADIENT, HEAD, JOURNAL, METRICS, PART, RANKING, RUNNING, UNFINISHED, checkpoint_folder,
+};
 
 use super::disk::{Disk, DiskFile, Entry};
 use super::format::{self, Format};
 use lock::{Lock, Taken};
-use owned::{Checkpoint, Claims, EVENTS, FIGURES, FIXED, METRICS, RESULTS, RUN, SUMMARY};
+use owned::{Checkpoint, Claims, FIGURES, FIXED, RESULTS, RUN, SUMMARY};
 use settle::{Commit, waiting};
 use springpot::table::Column;
 use std::io::{self, Read as _, Seek as _, Write as _};
@@ -286,14 +288,9 @@ impl Folder {
         self.create(SUMMARY)
     }
 
-    /// Makes the file of the events.
-    pub(crate) fn create_events(&mut self) -> io::Result<DiskFile> {
-        self.create(EVENTS)
-    }
-
-    /// Makes the file of the metrics.
-    pub(crate) fn create_metrics(&mut self) -> io::Result<DiskFile> {
-        self.create(METRICS)
+    /// Makes another of the files that every case has lines in.
+    pub(crate) fn create_beside(&mut self, name: &str) -> io::Result<DiskFile> {
+        self.create(name)
     }
 
     /// Writes a figure's file for `figures/`.

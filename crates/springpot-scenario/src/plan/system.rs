@@ -74,7 +74,14 @@ impl Plan {
         observables.with_derivatives(derivatives).columns()
     }
 
-    /// For each of [`Self::columns`] its place in a row of `system`, which was made of this plan; `None` where a cell is empty. Nothing where
+    /// [`Self::columns`], and behind them the derivatives that metrics alone need: what a row has.
+    pub fn row_columns(&self) -> Vec<Column> {
+        let mut columns = self.columns();
+        columns.extend(self.sensitivity.iter().flat_map(|plan| plan.for_metrics.iter().cloned()));
+        columns
+    }
+
+    /// For each of [`Self::row_columns`] its place in a row of `system`, which was made of this plan; `None` where a cell is empty. Nothing where
     /// all elements are enabled: rows are as they are.
     pub fn places(&self, system: &System) -> Option<Vec<Option<usize>>> {
         if self.absent.is_empty() {
@@ -82,7 +89,7 @@ impl Plan {
         }
         let own = system.columns();
         let own: HashMap<&str, usize> = own.iter().enumerate().map(|(k, column)| (&*column.name, k)).collect();
-        Some(self.columns().iter().map(|column| own.get(&*column.name).copied()).collect())
+        Some(self.row_columns().iter().map(|column| own.get(&*column.name).copied()).collect())
     }
 
     /// What can be observed of all elements, but for the energy lost in joints.

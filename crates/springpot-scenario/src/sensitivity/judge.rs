@@ -35,7 +35,14 @@ pub(crate) fn judge(root: &Table<'_>, plan: &Plan, asked: &Asked, first: usize) 
     let (values, gathered) = (values?, gathered?);
     let read = asked.by.iter().zip(&values).map(|(by, (value, unit))| parameter(root, &scene, by, *value, unit));
     let parameters = all(read.collect::<Vec<_>>())?;
-    let plain = SensitivityPlan { parameters, columns: Vec::new(), left_out: Vec::new(), engine: None };
+    let plain = SensitivityPlan {
+        parameters,
+        columns: Vec::new(),
+        for_metrics: Vec::new(),
+        no_gradient: Vec::new(),
+        left_out: Vec::new(),
+        engine: None,
+    };
     if !asked.is_asked {
         return Ok(plain);
     }
@@ -53,14 +60,14 @@ pub(crate) fn judge(root: &Table<'_>, plan: &Plan, asked: &Asked, first: usize) 
         seeds: gather.seeds(plan, &extended),
     });
     let told = told.collect();
-    let Chosen { columns, known, left_out } = columns(root, plan, asked, &plain.parameters)?;
+    let Chosen { columns, for_metrics, no_gradient, known, left_out } = columns(root, plan, asked, &plain.parameters)?;
     let engine = Sensitivity {
         parameters: told,
         extended: extended.is_extended().then(|| extended.system.clone()),
         control: asked.control,
         columns: known,
     };
-    Ok(SensitivityPlan { columns, left_out, engine: Some(Arc::new(engine)), ..plain })
+    Ok(SensitivityPlan { columns, for_metrics, no_gradient, left_out, engine: Some(Arc::new(engine)), ..plain })
 }
 
 /// What a parameter moves.
@@ -202,7 +209,9 @@ fn block_of(table: &Table<'_>, exponents: &dyn Fn(&str) -> Option<f64>, value: f
 struct Chosen {
     /// Of all cases.
     columns: Vec<Column>,
-    /// Those that the system knows.
+    for_metrics: Vec<Column>,
+    no_gradient: Vec<String>,
+    /// Those that the system knows, in their order.
     known: Vec<DerivativeColumn>,
     left_out: Vec<String>,
 }
@@ -243,18 +252,32 @@ fn columns(root: &Table<'_>, plan: &Plan, asked: &Asked, parameters: &[Parameter
             left_out.push(column.name.clone());
             continue;
         }
-        for (by, parameter) in parameters.iter().enumerate() {
-            let name = format!("d({})/d({})", column.name, parameter.name);
-            let meaning = format!("derivative of {} by {}", column.name, parameter.name);
-            let told = Column::new(name, over(&column.unit, &parameter.unit), meaning);
-            known.extend(quantity.map(|&of| DerivativeColumn { of, by, column: told.clone() }));
-            columns.push(told);
+        by_parameters(column, quantity, parameters, &mut columns, &mut known);
+    }
+    let (mut for_metrics, mut no_gradient) = (Vec::new(), Vec::new());
+    let names: HashMap<&str, &Column> = all.iter().map(|column| (&*column.name, column)).collect();
+    for metric in plan.metrics.iter().map(|plan| &plan.metric) {
+        let told = SensitivityPlan::name(&metric.of, &parameters[0].name);
+        if columns.iter().chain(&for_metrics).any(|column| column.name == told) {
+            continue;
+        }
+        match (names.get(&*metric.of), acting.get(&metric.of)) {
+            (Some(column), Some(quantity)) if has_derivative(*quantity) => {
+                by_parameters(column, Some(quantity), parameters, &mut for_metrics, &mut known);
+            }
+            (Some(column), None) if plan.lacks(&column.name) => {
+                by_parameters(column, None, parameters, &mut for_metrics, &mut known);
+            }
+            _ => no_gradient.push(metric.name.clone()),
         }
     }
-    if columns.len() > MAX_COLUMNS {
+    if columns.len() + for_metrics.len() > MAX_COLUMNS {
         let place =
             root.get("sensitivity").map_or_else(|| parameters[0].place.clone(), |field| field.node.place.clone());
-        let message = format!("makes {} columns of derivatives; at most {MAX_COLUMNS} are told", columns.len());
+        let message = format!(
+            "makes {} columns of derivatives; at most {MAX_COLUMNS} are told",
+            columns.len() + for_metrics.len()
+        );
         return refuse(
             &place,
             RefusalKind::TooLarge,
@@ -262,7 +285,24 @@ fn columns(root: &Table<'_>, plan: &Plan, asked: &Asked, parameters: &[Parameter
             "choose columns, of = [\"q.*\"], or fewer parameters".to_owned(),
         );
     }
-    Ok(Chosen { columns, known, left_out })
+    Ok(Chosen { columns, for_metrics, no_gradient, known, left_out })
+}
+
+/// The derivatives of a column, which the system knows as `quantity` where it has it.
+fn by_parameters(
+    column: &Column,
+    quantity: Option<&Quantity>,
+    parameters: &[ParameterPlan],
+    columns: &mut Vec<Column>,
+    known: &mut Vec<DerivativeColumn>,
+) {
+    for (by, parameter) in parameters.iter().enumerate() {
+        let name = SensitivityPlan::name(&column.name, &parameter.name);
+        let meaning = format!("derivative of {} by {}", column.name, parameter.name);
+        let told = Column::new(name, over(&column.unit, &parameter.unit), meaning);
+        known.extend(quantity.map(|&of| DerivativeColumn { of, by, column: told.clone() }));
+        columns.push(told);
+    }
 }
 
 /// The unit of a quotient.

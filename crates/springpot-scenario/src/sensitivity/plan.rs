@@ -13,6 +13,10 @@ pub struct SensitivityPlan {
     pub parameters: Vec<ParameterPlan>,
     /// The derivatives `d(COLUMN)/d(PARAMETER)` that rows tell, behind all other columns.
     pub columns: Vec<Column>,
+    /// The derivatives that metrics alone need: a row has them behind all that it tells.
+    pub for_metrics: Vec<Column>,
+    /// Metrics whose gradient is not known, since no derivative is known of their columns.
+    pub no_gradient: Vec<String>,
     /// Columns that are written and that no derivative is known of: nobody asked for them by name.
     pub left_out: Vec<String>,
     /// What the engine is told; `None` where nothing is differentiated: the parameters are only there.
@@ -36,6 +40,13 @@ pub struct ParameterPlan {
     pub place: Place,
 }
 
+impl ParameterPlan {
+    /// The unit of a derivative by it of what is in `unit`.
+    pub fn over(&self, unit: &str) -> String {
+        over(unit, &self.unit)
+    }
+}
+
 impl SensitivityPlan {
     /// Whether rows tell derivatives.
     pub fn is_asked(&self) -> bool {
@@ -48,5 +59,19 @@ impl SensitivityPlan {
             let meaning = format!("derivative of the time of the event by {name}");
             Column::new(format!("d(t)/d({name})"), over("s", unit), meaning)
         })
+    }
+
+    /// What the derivative of a column by a parameter is called.
+    pub fn name(column: &str, parameter: &str) -> String {
+        format!("d({column})/d({parameter})")
+    }
+
+    /// Where rows have the derivatives of a column by each parameter, counted from the first derivative on; `None` where they do not.
+    pub fn places(&self, column: &str) -> Option<Vec<usize>> {
+        let place = |parameter: &ParameterPlan| {
+            let name = Self::name(column, &parameter.name);
+            self.columns.iter().chain(&self.for_metrics).position(|column| column.name == name)
+        };
+        self.parameters.iter().map(place).collect()
     }
 }

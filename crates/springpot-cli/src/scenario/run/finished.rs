@@ -122,9 +122,10 @@ impl Said {
             endings.iter().filter(|ending| has(ending)).map(|ending| ending.to_uppercase()).collect();
         let rows =
             folder.files().iter().find(|name| name.starts_with("results.")).map_or("results.csv", String::as_str);
-        let happened = if cases_events.is_empty() { "" } else { "events.csv, " };
-        let measured = if self.0.metrics.is_empty() { "" } else { "metrics.csv, " };
-        let mut files = format!("{rows}, {happened}{measured}summary.csv, run.json");
+        let beside = ["events.csv", "metrics.csv", "gradient.csv", "ranking.csv"];
+        let beside = beside.iter().filter(|name| folder.files().iter().any(|file| file == *name));
+        let beside: String = beside.map(|name| format!("{name}, ")).collect();
+        let mut files = format!("{rows}, {beside}summary.csv, run.json");
         if figures > 0 {
             let figures = count(figures, "figure", "figures").replace(' ', terminal::NO_BREAK);
             files.push_str(&format!(", {figures} ({})", formats.join(" and ")));

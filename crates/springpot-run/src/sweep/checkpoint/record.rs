@@ -74,7 +74,7 @@ pub(in crate::sweep) struct Written {
     pub(in crate::sweep) aside: bool,
     /// Its values that are kept for figures.
     pub(in crate::sweep) kept: Stretch,
-    /// One for each selected column.
+    /// One for each selected column, and for those beside them that rank parameters.
     pub(in crate::sweep) statistics: Vec<Statistics>,
     /// Its events.
     pub(in crate::sweep) events: CaseEvents,

@@ -14,16 +14,21 @@ pub(super) const RESULTS: &str = "results.csv";
 /// Statistics per case and column.
 pub(super) const SUMMARY: &str = "summary.csv";
 /// Rows at events of forward runs.
-pub(super) const EVENTS: &str = "events.csv";
+pub(crate) const EVENTS: &str = "events.csv";
 /// Metrics per case.
-pub(super) const METRICS: &str = "metrics.csv";
+pub(crate) const METRICS: &str = "metrics.csv";
+/// Derivatives of metrics per case.
+pub(crate) const GRADIENT: &str = "gradient.csv";
+/// Which parameters change which columns most, per case.
+pub(crate) const RANKING: &str = "ranking.csv";
 /// What was run and how it went.
 pub(super) const RUN: &str = "run.json";
 /// The folder of the figures, and what their names end with.
 pub(super) const FIGURES: &str = "figures";
 const FIGURE_ENDINGS: [&str; 3] = ["svg", "png", "pdf"];
 /// Every other file that a run puts in place.
-pub(super) const FIXED: [&str; 7] = [RESULTS, "results.parquet", "results.npz", SUMMARY, EVENTS, METRICS, RUN];
+pub(super) const FIXED: [&str; 9] =
+    [RESULTS, "results.parquet", "results.npz", SUMMARY, EVENTS, METRICS, GRADIENT, RANKING, RUN];
 
 /// Bytes of a page within which its mark stands.
 const PAGE_HEAD: u64 = 4_096;
