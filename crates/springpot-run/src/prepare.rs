@@ -11,7 +11,7 @@ use crate::table::folder::{Folder, FolderError, Targets};
 use crate::warning::Warn;
 use springpot::law::Catalog;
 use springpot::system::Stop;
-use springpot_scenario::{Cases, FigurePlan, RefusalKind, Refusals, Scenario};
+use springpot_scenario::{Cases, FigurePlan, Refusals, Scenario};
 use std::cell::OnceCell;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -126,11 +126,6 @@ impl Prepared {
         let scenario = asked.scenario()?;
         let planned = Planned::of(&scenario, with.catalog, with.stop, warn)?;
         let Planned { cases, plan, system, .. } = &planned;
-        if let Some(sensitivity) = plan.sensitivity.as_ref().filter(|plan| every.is_some() && plan.is_asked()) {
-            let message = "a checkpoint keeps no derivatives: `--checkpoint-every` goes without [sensitivity]";
-            let refusal = sensitivity.parameters[0].place.refuse(RefusalKind::Rule, message);
-            return Err(BeginError::Refused(refusal.help("leave one of the two out").into()));
-        }
         let survey = Survey::of(cases, plan, system, Depth::Starts, with.stop)?;
         if survey.interrupted {
             return Err(BeginError::Interrupted);

@@ -185,6 +185,18 @@ fn a_killed_run_keeps_its_events() {
 }
 
 #[test]
+fn a_killed_run_keeps_its_derivatives() {
+    let tables = "[[parameter]]\nname = \"order\"\npath = \"element.strut.alpha\"\n\
+                  [sensitivity]\nby = [\"order\", \"element.strut.to.point.0\", \"motion.start.v.q1\"]\nof = [\"q.q1\", \"strut.stored\"]\n\
+                  [[sweep]]\nparameter = \"element.strut.E_d\"\nvalues = [50, 60, 70]\n";
+    let place = Place::with(&format!("{FALLING}{tables}"));
+    let kills = killed_and_equal(&place, &["--jobs", "2", "--set", "time.end=10"], "0.5", &mut Dice(6));
+    assert!(kills > 0);
+    assert_eq!(place.table("out/gradient.csv").rows.len(), 3 * 2 * 3);
+    assert_eq!(place.table("out/ranking.csv").rows.len(), 3 * 2 * 3);
+}
+
+#[test]
 fn a_killed_prescribed_motion_goes_on() {
     let place = Place::with(ARM);
     let set = ["--set", "time.end=20", "--set", "time.output_step=0.01", "--no-figures"];
