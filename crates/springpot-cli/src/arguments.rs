@@ -45,6 +45,19 @@ and of nothing else; one run at a time writes to a folder. \
 Ctrl-C ends a run early; the rows so far are kept, all of them complete. With --checkpoint-every a run that was interrupted or \
 killed goes on with --resume, and its results are those of an uninterrupted run.")]
     Run(RunOptions),
+    /// Run a scenario with its derivatives, and say which of its numbers matter.
+    #[command(after_help = "\
+Examples:
+  springpot sensitivity arm.toml
+  springpot sensitivity arm.toml --by element.strut.k,element.strut.to.point.0
+  springpot sensitivity arm.toml --by element.strut.k --of 'q.*,strut.force' --check
+
+Runs the scenario as `run --sensitivity` does, into a folder of results, and prints which parameters change which columns most, the gradients of \
+its metrics, and what the derivatives take of steps. Without --by the parameters are those of [sensitivity], or all [[parameter]]. With --check the \
+derivatives of the first case are compared with differences of whole runs, one line a parameter.
+
+Exit codes: 0 done, 1 a run failed or a derivative differs by more than 1e-5 of its largest value, 2 the input was refused, 130 interrupted.")]
+    Sensitivity(SensitivityOptions),
     /// Put the parts of a run together that several machines have run.
     #[command(after_help = "\
 Examples:
@@ -532,6 +545,40 @@ pub(crate) struct RunOptions {
     /// Print nothing but warnings and errors
     #[arg(long, short)]
     pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SensitivityOptions {
+    /// Scenario file (TOML)
+    #[arg(value_name = "SCENARIO")]
+    pub(crate) file: PathBuf,
+    /// Differentiate by these numbers: paths, or names of parameters [default: those of the file]
+    #[arg(long, value_name = "PATH,PATH")]
+    pub(crate) by: Vec<String>,
+    /// Differentiate these columns, or all that a glob matches [default: those of the file]
+    #[arg(long, value_name = "COLUMN,COLUMN", value_delimiter = ',')]
+    pub(crate) of: Vec<String>,
+    /// Override a value of the file, such as element.strut.alpha=0.5; PATH= takes the key out; may be given several times
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub(crate) overrides: Vec<String>,
+    /// Sweep a parameter: PATH=v1,v2,... or PATH=FROM:TO:COUNT[:log]; may be given several times
+    #[arg(long = "sweep", value_name = "PATH=VALUES")]
+    pub(crate) sweeps: Vec<String>,
+    /// Compare with differences of whole runs of the first case
+    #[arg(long)]
+    pub(crate) check: bool,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Folder of the results [default: results/<file stem>]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Cases at a time [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..), allow_negative_numbers = true)]
+    pub(crate) jobs: Option<u16>,
+    /// Write no figures
+    #[arg(long)]
+    pub(crate) no_figures: bool,
 }
 
 #[derive(Debug, Args)]

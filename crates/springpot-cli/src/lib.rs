@@ -140,6 +140,7 @@ fn command(catalog: &Catalog, disk: &Disk, arguments: &[OsString]) -> u8 {
     };
     let ending = match arguments.command {
         Command::Run(options) => scenario::run::run(&with_fewer_jobs(options), catalog, disk),
+        Command::Sensitivity(options) => scenario::sensitivity::sensitivity(&options, catalog, disk),
         Command::Merge(options) => scenario::run::merge(&options, catalog, disk),
         Command::Check(options) => scenario::check::check(&options, catalog),
         Command::Info(options) => robot::info::info(&options, catalog),

@@ -12,6 +12,7 @@
 //! | [`metrics`] | numbers that say how good a run is, at its end and from its results |
 //! | [`parts`] | a law as its parts: drawn, and as formulas |
 //! | [`numbers`] | numbers and counts as a reader wants them |
+//! | [`trial`] | scenarios whose parameters take other values |
 //! | [`labels`] | names of columns as a reader of a figure wants them |
 //!
 //! ```no_run
@@ -50,6 +51,7 @@ mod scene;
 mod survey;
 pub mod sweep;
 pub mod table;
+pub mod trial;
 mod trouble;
 mod view;
 mod warning;

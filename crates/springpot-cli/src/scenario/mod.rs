@@ -1,8 +1,9 @@
-//! Commands about a scenario: init, check, run, merge.
+//! Commands about a scenario: init, check, run, merge, sensitivity.
 
 pub(crate) mod check;
 pub(crate) mod failures;
 pub(crate) mod init;
 pub(crate) mod run;
+pub(crate) mod sensitivity;
 pub(crate) mod starts;
 pub(crate) mod swept;

@@ -14,7 +14,7 @@ use springpot::law::Catalog;
 use springpot_run::sweep::{Progress, Status, SweepError};
 use springpot_run::table::disk::Disk;
 use springpot_run::table::folder::FolderError;
-use springpot_run::{Finished, Prepared};
+use springpot_run::{Finished, NewRun, Prepared, Surroundings};
 use std::path::Path;
 use std::time::Instant;
 
@@ -30,13 +30,26 @@ enum Stopped {
 pub(crate) fn run(options: &RunOptions, catalog: &Catalog, disk: &Disk) -> Ending {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let jobs = options.jobs.map_or(cores, usize::from);
-    carry_out(jobs, options.quiet, options.view.then_some(disk), || prepare(options, catalog, disk))
+    let prepare = || prepare(options, catalog, disk);
+    carry_out(jobs, options.quiet, options.view.then_some(disk), prepare, |_| Ending::Done)
+}
+
+/// Runs what was asked for, on `jobs` cores; `then` says what comes of a run that is done.
+pub(crate) fn run_new(
+    new: NewRun,
+    (jobs, quiet): (usize, bool),
+    (catalog, disk): (&Catalog, &Disk),
+    then: impl FnOnce(&Finished) -> Ending,
+) -> Ending {
+    let holder = format!("springpot on {}", new.asked.name);
+    let with = Surroundings { catalog, disk, stop: signals::stop(), holder: &holder };
+    carry_out(jobs, quiet, None, || Ok(Prepared::begin(new, with, &mut diagnostic::warn)?), then)
 }
 
 /// `springpot merge`.
 pub(crate) fn merge(options: &MergeOptions, catalog: &Catalog, disk: &Disk) -> Ending {
     // One job reads the parts in order.
-    carry_out(1, options.quiet, None, || prepare::merge(options, catalog, disk))
+    carry_out(1, options.quiet, None, || prepare::merge(options, catalog, disk), |_| Ending::Done)
 }
 
 /// `view`: the disk on which a page is written beside the results.
@@ -45,6 +58,7 @@ fn carry_out(
     quiet: bool,
     view: Option<&Disk>,
     prepare: impl FnOnce() -> Result<Prepared, Unprepared>,
+    then: impl FnOnce(&Finished) -> Ending,
 ) -> Ending {
     let begun = Instant::now();
     let prepared = match prepare() {
@@ -97,7 +111,7 @@ fn carry_out(
                 }
             }
             match status {
-                Status::Done => Ending::Done,
+                Status::Done => then(&finished.0),
                 Status::Failed => Ending::Failed,
                 Status::Interrupted => Ending::Interrupted,
             }

@@ -301,3 +301,68 @@ fn parts_and_threads_give_the_same_bytes() {
     ]);
     assert!(!place.files("one").iter().any(|name| ["gradient.csv", "ranking.csv"].contains(&&**name)));
 }
+
+#[test]
+fn the_command_says_what_matters_and_checks_it() {
+    let place = Place::with(&format!("{ARM}{TABLES}{METRICS}"));
+    let said = place.done(&["sensitivity", "arm.toml", "--check", "--no-figures", "--out", "r"]).stdout;
+    let ranking = place.table("r/ranking.csv");
+    assert!(said.contains(ranking.texts("column")[0]) && said.contains("strut.force  k"), "{said}");
+    let steps: u64 = place.record("r")["steps"].as_u64().unwrap();
+    // With control = false the steps are those of the plain run.
+    assert!(said.contains(&format!("steps    {steps} steps, {steps} without derivatives")), "{said}");
+    for parameter in ["k", "constants.A"] {
+        assert!(said.contains(&format!("check    {parameter} agrees: ")), "{said}");
+    }
+    let by = [
+        "sensitivity",
+        "arm.toml",
+        "--by",
+        "robot.body.fore.mass,robot.body.upper.joint.friction",
+        "--of",
+        "q.*,v.q2",
+        "--check",
+        "--json",
+        "--no-figures",
+        "--set",
+        "sensitivity.control=true",
+    ];
+    let told: serde_json::Value = serde_json::from_str(&place.done(&by).stdout).unwrap();
+    assert_eq!(told["ranking"].as_array().unwrap().len(), 6);
+    assert_eq!(told["gradient"].as_array().unwrap().len(), 24);
+    // Friction is at 0, an end of its range: differences from one side.
+    let check = told["check"].as_array().unwrap();
+    assert!(check.iter().all(|one| one["agrees"] == true && one["off"].as_f64().unwrap() < 1e-5), "{check:?}");
+    assert_eq!(check[1]["parameter"], "robot.body.upper.joint.friction");
+    assert!(check[1]["off"].as_f64().unwrap() > 0.0);
+
+    for (arguments, words) in [
+        (&["--by", "element.strut.kk"][..], "has no `kk`"),
+        (&["--of", "q.q9"], "matches no column"),
+        (&["--by", "time.end"], "time.end cannot be a parameter"),
+    ] {
+        let ended = place.springpot(&[&["sensitivity", "arm.toml", "--out", "none"][..], arguments].concat());
+        ended.ends(2, &[words]);
+        assert!(!place.path("none/results.csv").exists());
+    }
+    place.write("arm.toml", ARM);
+    place.springpot(&["sensitivity", "arm.toml"]).ends(2, &["no parameter"]);
+}
+
+#[test]
+fn a_derivative_that_differs_is_an_error() {
+    // At rest no step is refused for the sake of the run: by its steps alone derivatives are wrong, whatever the tolerance.
+    let rest = r#"
+robot = { gravity = [0, 0, 0], body = [{ name = "mass", joint = { name = "x", kind = "prismatic", axis = [1, 0, 0] }, mass = 2 }] }
+motion = { kind = "forward" }
+time = { end = 2, output_step = 0.05 }
+element = [{ name = "pad", joint = "x", law = "fractional-kelvin-voigt", parameters = { k = 50, c = 50, alpha = 0.5 } }]
+"#;
+    let place = Place::with(rest);
+    let asked = ["sensitivity", "arm.toml", "--by", "motion.start.v.x", "--of", "q.*", "--check"];
+    let said = place.done(&asked).stdout;
+    assert!(said.contains("motion.start.v.x agrees: "), "{said}");
+    let ended = place.springpot(&[&asked[..], &["--set", "sensitivity.control=false"]].concat());
+    assert_eq!(ended.code, Some(1), "{ended:?}");
+    assert!(ended.stdout.contains("motion.start.v.x DIFFERS: "), "{}", ended.stdout);
+}

@@ -20,7 +20,10 @@ impl Slopes {
     /// What the metric changes by where the rows change by `change`. A row that does not change adds nothing, whatever its slope.
     pub(super) fn along(&self, change: impl Fn(usize) -> f64) -> f64 {
         let changes = self.0.iter().map(|(k, slope)| (slope, change(*k)));
-        changes.filter(|(_, change)| *change != 0.0).map(|(slope, change)| slope * change).sum()
+        changes
+            .filter(|(_, change)| *change != 0.0)
+            .map(|(slope, change)| slope * change)
+            .fold(0.0, |sum, term| sum + term)
     }
 }
 

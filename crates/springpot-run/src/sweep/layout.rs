@@ -124,11 +124,6 @@ impl Layout {
         swept.chain(names.iter().map(|name| Column::new(*name, "", ""))).collect()
     }
 
-    /// How many values of a row are columns of the run: behind them stands what metrics alone need.
-    pub(super) fn width(&self) -> usize {
-        self.wanted.columns().len()
-    }
-
     /// Columns of events.csv: all of the run.
     pub(super) fn event_columns(&self) -> Vec<Column> {
         let (time, others) = self.wanted.columns().split_first().expect("a run has a time");

@@ -41,6 +41,15 @@ pub struct ParameterPlan {
 }
 
 impl ParameterPlan {
+    /// What [`crate::Scenario::set_anew`] takes to give it a value, SI: `PATH=VALUE` for each of its paths.
+    pub fn assignments(&self, value: f64) -> impl Iterator<Item = String> {
+        self.paths.iter().map(move |path| match &*self.unit {
+            // A constant has the unit that it is written in.
+            unit if path.starts_with("constants.") && !unit.is_empty() => format!("{path}=\"{value:?} {unit}\""),
+            _ => format!("{path}={value:?}"),
+        })
+    }
+
     /// The unit of a derivative by it of what is in `unit`.
     pub fn over(&self, unit: &str) -> String {
         over(unit, &self.unit)

@@ -1,0 +1,164 @@
+//! `--check`: derivatives of a run beside fourth-order differences of whole runs.
+
+use super::Untold;
+use springpot::observe::Quantity;
+use springpot::system::Stop;
+use springpot::table::Column;
+use springpot_run::trial::{Varied, rows};
+use springpot_scenario::Plan;
+
+/// What a derivative may differ by, of its largest value.
+const CLOSE: f64 = 1e-5;
+
+/// Tolerances of the runs that differences are taken of, where those of the file are larger.
+const RTOL: f64 = 1e-11;
+const MEMORY_RTOL: f64 = 1e-13;
+
+/// The step of a difference, of the size of the parameter; the next one where its place takes no such value, or where this one is too coarse.
+const STEPS: [f64; 3] = [1e-3, 1e-4, 1e-5];
+
+/// Tolerance of one more run, beside which these show how far they are from the truth, and how many times that is left open.
+const FINER: f64 = 0.2;
+const OPEN: f64 = 4.0;
+
+/// A derivative is no better than its column: how many times the share that the column is off by is left open.
+const BESIDE: f64 = 10.0;
+
+/// Where a difference is taken, in steps, and the weights of the values there: from both sides, or where the value is at an end of its range from one.
+const STENCILS: [(&[f64], &[f64]); 3] = [
+    (&[-2.0, -1.0, 1.0, 2.0], &[1.0 / 12.0, -2.0 / 3.0, 2.0 / 3.0, -1.0 / 12.0]),
+    (&[0.0, 1.0, 2.0, 3.0, 4.0], &[-25.0 / 12.0, 4.0, -3.0, 4.0 / 3.0, -0.25]),
+    (&[0.0, -1.0, -2.0, -3.0, -4.0], &[25.0 / 12.0, -4.0, 3.0, -4.0 / 3.0, 0.25]),
+];
+
+/// What was found of one parameter.
+#[derive(Debug, Clone)]
+pub(super) struct Compared {
+    pub(super) parameter: String,
+    /// Largest difference over the largest value of the derivative, of the column in which it is worst; less where differences tell less, or the column
+    /// itself is less exact.
+    pub(super) off: f64,
+    pub(super) column: String,
+    /// The step of the differences, SI.
+    pub(super) step: f64,
+}
+
+impl Compared {
+    /// Whether the derivative is what differences say.
+    pub(super) fn is_close(&self) -> bool {
+        self.off <= CLOSE
+    }
+}
+
+/// Compares the case of `plan`, parameter by parameter.
+pub(super) fn compare(varied: &Varied<'_>, plan: &Plan, stop: &Stop) -> Result<Vec<Compared>, Untold> {
+    let columns = plan.system_at_start().columns();
+    let names: Vec<String> = columns.iter().map(|column| column.name.clone()).collect();
+    let (told, _) = rows(plan, stop)?;
+    let noise = noise((&columns, &told), plan, stop)?;
+    let values: Vec<f64> = varied.parameters.iter().map(|parameter| parameter.value).collect();
+    let each = varied.parameters.iter().enumerate().map(|(p, parameter)| {
+        let size = parameter.typical;
+        let moved = |by: f64| {
+            let mut values = values.clone();
+            values[p] += by;
+            varied.cases(&values).and_then(|cases| cases.plan(0))
+        };
+        let mut refused = None;
+        let mut best: Option<Compared> = None;
+        'steps: for step in STEPS {
+            for (at, weights) in STENCILS {
+                let plans: Result<Vec<Plan>, _> = at.iter().map(|steps| moved(steps * step * size)).collect();
+                let plans = match plans {
+                    Ok(plans) => plans,
+                    Err(why) => {
+                        refused.get_or_insert(why);
+                        continue;
+                    }
+                };
+                let runs = plans.into_iter().map(|plan| Ok(rows(&tight(plan), stop)?.0));
+                let runs = runs.collect::<Result<Vec<_>, Untold>>()?;
+                let found = one((&names, &told, &noise), &runs, weights, (&parameter.name, step, size));
+                let is_close = found.is_close();
+                best = Some(best.filter(|best| best.off <= found.off).unwrap_or(found));
+                if is_close {
+                    break 'steps;
+                }
+                continue 'steps;
+            }
+        }
+        best.ok_or_else(|| {
+            refused.map_or_else(|| Untold::Failed(format!("{} cannot be moved", parameter.name)), Untold::Refused)
+        })
+    });
+    each.collect()
+}
+
+/// How exact a column is.
+#[derive(Debug, Clone, Copy)]
+struct Noise {
+    /// How far runs that differences are taken of are from the truth, rounding included.
+    of_differences: f64,
+    /// How far the run itself is, as a share of the largest value.
+    of_column: f64,
+}
+
+/// Column by column, of a run that has the rows `told`.
+fn noise((columns, told): (&[Column], &[Vec<f64>]), plan: &Plan, stop: &Stop) -> Result<Vec<Noise>, Untold> {
+    let tight = tight(plan.clone());
+    let mut finer = tight.clone();
+    finer.settings.rtol *= FINER;
+    let [(tight, _), (finer, _)] = [rows(&tight, stop)?, rows(&finer, stop)?];
+    let off = |k: usize, rows: &[Vec<f64>], others: &[Vec<f64>]| {
+        rows.iter().zip(others).map(|(one, other)| (one[k] - other[k]).abs()).fold(0.0, f64::max)
+    };
+    let count = tight.first().map_or(0, Vec::len);
+    let sizes: Vec<f64> = (0..count).map(|k| tight.iter().map(|row| row[k].abs()).fold(0.0, f64::max)).collect();
+    let one = |k: usize| {
+        // What is 0 but for rounding is rounded as what it is made of.
+        let alike = columns.iter().zip(&sizes).filter(|(column, _)| column.unit == columns[k].unit);
+        let largest = alike.map(|(_, size)| *size).fold(0.0, f64::max);
+        let of_column = if sizes[k] > 0.0 { off(k, told, &tight) / sizes[k] } else { 0.0 };
+        Noise { of_differences: off(k, &tight, &finer).max(4.0 * f64::EPSILON * largest), of_column }
+    };
+    Ok((0..count).map(one).collect())
+}
+
+/// The run without derivatives, as exact as differences need it.
+fn tight(mut plan: Plan) -> Plan {
+    plan.sensitivity = None;
+    plan.settings.rtol = plan.settings.rtol.min(RTOL);
+    plan.settings.memory_rtol = plan.settings.memory_rtol.min(MEMORY_RTOL);
+    plan
+}
+
+/// The worst column of one parameter.
+fn one(
+    (names, told, noise): (&[String], &[Vec<f64>], &[Noise]),
+    runs: &[Vec<Vec<f64>>],
+    weights: &[f64],
+    (parameter, relative, size): (&str, f64, f64),
+) -> Compared {
+    let step = relative * size;
+    let mut found = Compared { parameter: parameter.to_owned(), off: 0.0, column: String::new(), step };
+    for (k, name) in names.iter().enumerate() {
+        let Some((of, _)) = Quantity::of_derivative(name).filter(|(_, by)| *by == parameter) else { continue };
+        let Some(column) = names.iter().position(|own| own == of) else { continue };
+        let (mut off, mut largest) = (0.0f64, 0.0f64);
+        for (row, own) in told.iter().enumerate() {
+            let there = runs.iter().map(|rows| rows.get(row).map_or(f64::NAN, |row| row[column]));
+            let difference: f64 = there.zip(weights).map(|(y, weight)| weight * y).sum::<f64>() / step;
+            if own[k].is_finite() && difference.is_finite() {
+                off = off.max((own[k] - difference).abs());
+                largest = largest.max(own[k].abs()).max(difference.abs());
+            }
+        }
+        let Noise { of_differences, of_column } = noise[column];
+        let scale = largest.max(OPEN * of_differences / (step * CLOSE)) * (BESIDE * of_column / CLOSE).max(1.0);
+        let share = if off > 0.0 { off / scale } else { 0.0 };
+        if found.column.is_empty() || share > found.off {
+            (found.off, found.column) = (share, of.to_owned());
+        }
+    }
+    found
+}
