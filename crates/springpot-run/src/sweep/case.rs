@@ -121,7 +121,7 @@ pub(super) fn run<'a>(sweep: &'a Sweep<'a>, index: usize, sections: Sections<'a>
     }
     let Sections { rows, rest } = sections;
     let mut output = Output::open(sweep, index, rows, state.as_ref())?;
-    let resumed = state.map(|CaseState { run, watch, .. }| Resumed { run, watch });
+    let resumed = state.map(|CaseState { run, watch, lost, .. }| Resumed { run, watch, lost });
     let ran = simulate(sweep.cases, index, (stop, progress), resumed, &mut output)?;
     let wall = output.wall();
     let taken = output.close(|output| {

@@ -3,12 +3,11 @@
 use super::Sweep;
 use super::checkpoint::{CaseFiles, CaseState, Written};
 use super::metrics::CaseMetrics;
-use super::simulate::Sink;
+use super::simulate::{Resumed, Sink};
 use super::taken::{Taken, lead, push_row};
 use crate::table::disk::DiskFile;
 use crate::table::ordered::Section;
 use crate::table::{Statistics, push_fields, push_text};
-use springpot::driver::{Checkpoint, Watch};
 use springpot::system::System;
 use springpot_scenario::Plan;
 use std::io;
@@ -136,11 +135,11 @@ impl Sink for Output<'_> {
         self.files.as_ref().is_some_and(|files| last || files.is_due(t))
     }
 
-    fn keep(&mut self, plan: &Plan, system: &System, watch: Watch, run: Checkpoint) -> io::Result<()> {
+    fn keep(&mut self, plan: &Plan, system: &System, Resumed { run, watch, lost }: Resumed) -> io::Result<()> {
         self.hand_over()?;
         let written = self.written();
         let Self { sweep, index, files: Some(files), .. } = self else { return Ok(()) };
-        let state = CaseState { index: *index, digest: files.digest(plan, system), written, watch, run };
+        let state = CaseState { index: *index, digest: files.digest(plan, system), written, watch, lost, run };
         files.keep(&state, || sweep.file.sync())
     }
 

@@ -3,14 +3,14 @@
 use super::checkpoint::{CaseDone, Stretch, Written};
 use super::layout::Layout;
 use super::metrics::CaseMetrics;
-use super::simulate::{Ran, Sink, simulate};
+use super::simulate::{Ran, Resumed, Sink, simulate};
 use super::taken::{Taken, push_row};
 use super::{Progress, events::Happened};
 use crate::table::Statistics;
 use crate::table::sealed::{CHECKPOINT, SealError, open, seal};
 use crate::trouble::Trouble;
 use serde::{Deserialize, Serialize};
-use springpot::driver::{Checkpoint, PassedLimit, Report, Watch};
+use springpot::driver::{PassedLimit, Report};
 use springpot::system::{Stop, System};
 use springpot_scenario::{Cases, Plan};
 use std::io;
@@ -245,7 +245,7 @@ impl Sink for Memory<'_> {
         false
     }
 
-    fn keep(&mut self, _plan: &Plan, _system: &System, _watch: Watch, _run: Checkpoint) -> io::Result<()> {
+    fn keep(&mut self, _plan: &Plan, _system: &System, _resumed: Resumed) -> io::Result<()> {
         Ok(())
     }
 

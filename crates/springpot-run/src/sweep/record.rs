@@ -50,7 +50,7 @@ impl Outcome {
         });
         match record {
             Value::Object(mut map) => {
-                map.extend(sensitivity(plan));
+                map.extend(sensitivity(cases, plan, &self.cases));
                 if !layout.events().is_empty() {
                     map.insert("events".to_owned(), counts(layout, &self.events));
                 }
@@ -89,8 +89,8 @@ pub(crate) fn begun(cases: &Cases, plan: &Plan, layout: &Layout, range: Range<us
     }
 }
 
-/// By what the first case is differentiated, and what; nothing where it is not.
-fn sensitivity(plan: &Plan) -> Option<(String, Value)> {
+/// By what the first case is differentiated, and what; where derivatives of any case end. Nothing where it is not.
+fn sensitivity(cases: &Cases, plan: &Plan, done: &[CaseResult]) -> Option<(String, Value)> {
     let sensitivity = plan.sensitivity.as_ref().filter(|sensitivity| sensitivity.is_asked())?;
     let parameters = sensitivity.parameters.iter().map(|parameter| {
         json!({
@@ -103,7 +103,19 @@ fn sensitivity(plan: &Plan) -> Option<(String, Value)> {
         json!({ "name": column.name, "column": of, "parameter": by, "unit": column.unit })
     });
     let (parameters, columns): (Value, Value) = (parameters.collect(), columns.collect());
-    let record = json!({ "parameters": parameters, "columns": columns, "lost": [], "method": "forward" });
+    let lost: Vec<Value> = done
+        .iter()
+        .flat_map(|case| case.metrics.derivatives.lost.iter().map(move |lost| (case.index, lost)))
+        .map(|(index, lost)| {
+            let name = sensitivity.parameters.get(lost.parameter).map(|parameter| &parameter.name);
+            let mut told = json!({ "parameter": name, "t": lost.t, "why": lost.why });
+            if cases.len() > 1 {
+                told["case"] = index.into();
+            }
+            told
+        })
+        .collect();
+    let record = json!({ "parameters": parameters, "columns": columns, "lost": lost, "method": "forward" });
     Some(("sensitivity".to_owned(), record))
 }
 

@@ -1,9 +1,11 @@
 //! The run of one case, wherever its rows go.
 
 use super::Progress;
+use super::derivatives::Losses;
 use super::metrics::CaseMetrics;
 use crate::trouble::Trouble;
 use springpot::driver::{self, Checkpoint, LimitWatch, PassedLimit, Report, Rows, Watch};
+use springpot::sensitivity::Lost;
 use springpot::system::{RunError, Stop, System};
 use springpot_scenario::{Cases, Plan};
 use std::io;
@@ -20,7 +22,7 @@ pub(super) trait Sink {
     fn is_due(&self, t: f64, last: bool) -> bool;
 
     /// Keeps what it takes to go on.
-    fn keep(&mut self, plan: &Plan, system: &System, watch: Watch, run: Checkpoint) -> io::Result<()>;
+    fn keep(&mut self, plan: &Plan, system: &System, resumed: Resumed) -> io::Result<()>;
 
     /// What the metrics are of the rows so far.
     fn metrics(&self, plan: &Plan) -> CaseMetrics;
@@ -30,6 +32,8 @@ pub(super) trait Sink {
 pub(super) struct Resumed {
     pub(super) run: Checkpoint,
     pub(super) watch: Watch,
+    /// Derivatives that are lost.
+    pub(super) lost: Vec<Lost>,
 }
 
 /// What a case did, but for its rows.
@@ -71,22 +75,26 @@ pub(super) fn simulate(
     let (system, settings) = (plan.system_unless(stop), plan.settings.clone());
     let watch = LimitWatch::new(&system);
     let places = plan.places(&system);
-    let mut rows = CaseRows { sink, progress, watch, plan: &plan, system: &system, places, row: Vec::new() };
+    let losses = Losses::of(&plan, Vec::new());
+    let mut rows = CaseRows { sink, progress, watch, losses, plan: &plan, system: &system, places, row: Vec::new() };
     let (report, outcome) = match resumed {
         None => driver::run(&system, &settings, &mut rows, stop),
-        Some(Resumed { run, watch }) => {
+        Some(Resumed { run, watch, lost }) => {
             rows.watch.go_on(watch);
+            rows.losses = Losses::of(&plan, lost);
             driver::resume(&system, &settings, run, &mut rows, stop)
         }
     };
     let limits = rows.watch.passed();
+    let lost = rows.losses.as_ref().map_or_else(Vec::new, |losses| losses.lost().to_vec());
     let (error, interrupted) = match outcome {
         Ok(()) => (None, false),
         // What was kept last is what can be gone on from.
         Err(RunError::Output(error)) => return Err(error),
         Err(error) => (Some(Trouble::of(&error, &plan)), matches!(error, RunError::Interrupted { .. })),
     };
-    let (no_ledger, metrics) = (why_no_ledger(&system, &report), sink.metrics(&plan));
+    let (no_ledger, mut metrics) = (why_no_ledger(&system, &report), sink.metrics(&plan));
+    metrics.derivatives.lost = lost;
     Ok(Ran { report, error, interrupted, no_ledger, limits, metrics })
 }
 
@@ -95,6 +103,8 @@ struct CaseRows<'a> {
     sink: &'a mut dyn Sink,
     progress: &'a Progress,
     watch: LimitWatch,
+    /// Where there are derivatives.
+    losses: Option<Losses>,
     plan: &'a Plan,
     system: &'a System,
     /// Where the cells of a row stand in a row of the system, if elsewhere.
@@ -104,11 +114,22 @@ struct CaseRows<'a> {
 }
 
 impl CaseRows<'_> {
-    /// Fills in the empty cells of elements that are not enabled.
+    /// Fills in the empty cells of elements that are not enabled, and empties those of derivatives that are lost: whether there are any.
     fn spread(&mut self, row: &[f64]) -> bool {
-        let Some(places) = &self.places else { return false };
-        self.row.clear();
-        self.row.extend(places.iter().map(|place| place.map_or(f64::NAN, |place| row[place])));
+        let is_spread = self.places.as_ref().is_some_and(|places| {
+            self.row.clear();
+            self.row.extend(places.iter().map(|place| place.map_or(f64::NAN, |place| row[place])));
+            true
+        });
+        let Some(losses) = &mut self.losses else { return is_spread };
+        if !losses.see(if is_spread { &self.row } else { row }) {
+            return is_spread;
+        }
+        if !is_spread {
+            self.row.clear();
+            self.row.extend_from_slice(row);
+        }
+        losses.clear(&mut self.row);
         true
     }
 }
@@ -141,13 +162,18 @@ impl Rows for CaseRows<'_> {
         self.progress.switches.fetch_max(switches, Ordering::Relaxed);
     }
 
+    fn lost(&mut self, lost: Lost) {
+        self.losses.iter_mut().for_each(|losses| losses.lose(lost.clone()));
+    }
+
     fn wants_checkpoint(&mut self, t: f64, last: bool) -> bool {
         self.progress.reach(t);
         self.sink.is_due(t, last)
     }
 
     fn checkpoint(&mut self, run: Checkpoint) -> io::Result<()> {
-        self.sink.keep(self.plan, self.system, self.watch.seen(), run)
+        let lost = self.losses.as_ref().map_or_else(Vec::new, |losses| losses.lost().to_vec());
+        self.sink.keep(self.plan, self.system, Resumed { run, watch: self.watch.seen(), lost })
     }
 }
 

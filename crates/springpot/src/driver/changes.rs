@@ -18,10 +18,9 @@ const BACKWARDS: [f64; 4] = [-4.0, 3.0, -4.0 / 3.0, 0.25];
 const GRAZES: f64 = 1e-9;
 
 impl Driver {
-    /// Where derivatives ended, by the number of their parameter.
-    pub(super) fn lost(&self) -> impl Iterator<Item = (usize, &Lost)> {
-        let all = self.recorder.variation.iter().flat_map(|variation| variation.lost());
-        all.enumerate().filter_map(|(p, lost)| Some((p, lost.as_ref()?)))
+    /// Where derivatives ended.
+    pub(super) fn lost(&self) -> impl Iterator<Item = &Lost> {
+        self.recorder.variation.iter().flat_map(|variation| variation.lost()).flatten()
     }
 
     /// What parameters change on the far side of what was crossed, where velocities and accelerations were `before`; at a change of the robot's own

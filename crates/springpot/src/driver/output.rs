@@ -24,12 +24,14 @@ pub(super) struct Output<'a> {
     snapshot: Snapshot,
     quantities: Vec<Quantity>,
     row: Vec<f64>,
+    /// Parameters whose derivatives were told to have ended.
+    lost: Vec<usize>,
 }
 
 impl<'a> Output<'a> {
     pub(super) fn new(cx: Context, rows: &'a mut dyn Rows, written: Written) -> Self {
         let quantities = cx.system.observables().quantities();
-        Self { rows, written, snapshot: Snapshot::new(cx.system), quantities, row: Vec::new() }
+        Self { rows, written, snapshot: Snapshot::new(cx.system), quantities, row: Vec::new(), lost: Vec::new() }
     }
 
     /// The time of the next row.
@@ -73,6 +75,7 @@ impl<'a> Output<'a> {
         self.take_row(cx, driver)?;
         let later = driver.passage(cx, &cx.system.watched_events()[event], at)?.unwrap_or_default();
         self.follow_event(cx, driver, &later)?;
+        self.tell_lost(driver);
         self.rows.event(event, &self.row, &later)?;
         Ok(())
     }
@@ -96,6 +99,7 @@ impl<'a> Output<'a> {
     fn write(&mut self, cx: Context, driver: &Driver) -> Result<(), RunError> {
         self.take_residual(cx, driver);
         self.take_row(cx, driver)?;
+        self.tell_lost(driver);
         self.rows.row(&self.row)?;
         self.written.rows += 1;
         self.written.last = Some(self.snapshot.t());
@@ -136,9 +140,14 @@ impl<'a> Output<'a> {
         written.rounding = written.rounding.max(ROUNDING * sizes);
     }
 
-    /// Tells where derivatives ended.
-    pub(super) fn tell_lost(&mut self, driver: &Driver) {
-        driver.lost().for_each(|(parameter, lost)| self.rows.lost(parameter, lost));
+    /// Tells where derivatives ended since the last row.
+    fn tell_lost(&mut self, driver: &Driver) {
+        for lost in driver.lost() {
+            if !self.lost.contains(&lost.parameter) {
+                self.lost.push(lost.parameter);
+                self.rows.lost(lost.clone());
+            }
+        }
     }
 
     /// Whether the run may be believed; to be asked at its end.

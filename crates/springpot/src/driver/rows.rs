@@ -21,11 +21,11 @@ pub trait Rows {
         Ok(())
     }
 
-    /// At the end, by which parameter of [`crate::system::System::sensitivity`] derivatives ended before, and where.
-    fn lost(&mut self, _parameter: usize, _lost: &Lost) {}
-
     /// Before the first row, how often the signals of the run will switch ([`super::Report::switches`]).
     fn looked_ahead(&mut self, _switches: u64) {}
+
+    /// The derivatives by a parameter end here: those of later rows mean nothing.
+    fn lost(&mut self, _lost: Lost) {}
 
     /// Whether [`Self::checkpoint`] is to be called now, at time `t` between two steps; `last` where the run stops here because it
     /// was interrupted. Asking changes nothing about the steps.

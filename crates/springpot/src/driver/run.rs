@@ -51,7 +51,6 @@ fn go(
     let mut output = Output::new(system.context(), rows, written);
     let events = Watch::new(system, &driver.recorder.settings, events, stop);
     let outcome = events.and_then(|events| to_the_end(system, &mut driver, &mut output, events, stop));
-    output.tell_lost(&driver);
     (output.report(&driver), outcome)
 }
 

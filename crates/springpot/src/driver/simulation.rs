@@ -231,8 +231,8 @@ impl Simulation {
         Ok(variation.map_or_else(Vec::new, |all| all.values(quantity, &snapshot).unwrap_or_else(|| unknown(all))))
     }
 
-    /// By which parameters of [`System::sensitivity`] derivatives have ended, by their numbers, and where.
-    pub fn lost(&self) -> impl Iterator<Item = (usize, &Lost)> {
+    /// By which parameters of [`System::sensitivity`] derivatives have ended, and where.
+    pub fn lost(&self) -> impl Iterator<Item = &Lost> {
         self.driver.lost()
     }
 

@@ -67,7 +67,7 @@ impl Variation {
 
     /// Derivatives by parameter `p` end at `t`.
     pub(crate) fn lose(&mut self, p: usize, t: f64, why: &str) {
-        self.lost[p].get_or_insert_with(|| Lost { t, why: why.to_owned() });
+        self.lost[p].get_or_insert_with(|| Lost { parameter: p, t, why: why.to_owned() });
     }
 
     fn lose_all(&mut self, t: f64, why: &str) {

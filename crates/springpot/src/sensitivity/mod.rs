@@ -229,6 +229,8 @@ pub enum Switched {
 /// Where the derivatives by a parameter end: the solution has none there, or has another one on each side.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Lost {
+    /// Which of [`Sensitivity::parameters`].
+    pub parameter: usize,
     /// From when on there are none, s.
     pub t: f64,
     /// Why.

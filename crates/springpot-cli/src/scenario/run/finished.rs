@@ -33,6 +33,7 @@ impl Said {
             let more = count(more, "more limit of a joint is", "more limits of joints are");
             diagnostic::warning(format!("{more} passed; run.json says which"), None);
         }
+        self.warn_of_lost(ran);
         // Runs that choose their steps have failed by then.
         let unbalanced = || outcome.cases.iter().filter(|case| case.error.is_none() && !case.report.is_balanced());
         if let Some(case) = unbalanced().next() {
@@ -42,6 +43,30 @@ impl Said {
             let message = format!("the energy balance is off by {residual} J of {of} J turned over");
             let message = in_cases(cases, ran, case.index, unbalanced().count(), &message);
             diagnostic::warning(message, Some("take a shorter solver.step".to_owned()));
+        }
+    }
+
+    /// Where derivatives end before the run does.
+    fn warn_of_lost(&self, ran: usize) {
+        let Finished { cases, outcome, .. } = &self.0;
+        let lost = || {
+            outcome
+                .cases
+                .iter()
+                .flat_map(|case| case.metrics.derivatives.lost.iter().map(move |lost| (case.index, lost)))
+        };
+        let Some(first) = lost().next() else { return };
+        let Some(plan) = cases.plan(first.0).ok().and_then(|plan| plan.sensitivity) else { return };
+        for (p, parameter) in plan.parameters.iter().enumerate() {
+            let of = || lost().filter(|(_, lost)| lost.parameter == p);
+            let Some((index, lost)) = of().next() else { continue };
+            let name = plain::title(&parameter.name);
+            let message = format!("derivatives by {name} end at t = {} s: {}", short(lost.t), lost.why);
+            let message = in_cases(cases, ran, index, of().count(), &message);
+            diagnostic::warning(
+                message,
+                Some("their cells are empty from there on; run.json has them under sensitivity.lost".to_owned()),
+            );
         }
     }
 

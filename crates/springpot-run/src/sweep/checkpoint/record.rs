@@ -10,6 +10,7 @@ use crate::trouble::Trouble;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use springpot::driver::{Checkpoint, PassedLimit, Report, Watch};
+use springpot::sensitivity::Lost;
 use springpot::system::{Stop, System};
 use springpot_scenario::{Cases, Plan};
 use std::fmt::{self, Write as _};
@@ -91,6 +92,7 @@ pub(in crate::sweep) struct CaseState {
     pub(in crate::sweep) digest: u32,
     pub(in crate::sweep) written: Written,
     pub(in crate::sweep) watch: Watch,
+    pub(in crate::sweep) lost: Vec<Lost>,
     pub(in crate::sweep) run: Checkpoint,
 }
 
