@@ -37,6 +37,9 @@ inputs = { u = "1 V" }
 """
 
 
+SMOOTH = TEXT.replace('event = [{ name = "turn", when = "v.q1" }]\n', "")
+
+
 def robots() -> None:
     model: sp.Model = sp.Model.from_scenario(TEXT, set={"robot.body.arm.mass": "1.5 kg"})
     urdf: sp.Model = sp.Model.from_urdf(Path(__file__).parents[3] / "testdata" / "multibody" / "ur5.urdf", gravity=[0, 0, -1.62])
@@ -75,6 +78,8 @@ def simulations() -> None:
     sp.Simulation(TEXT, inputs={"strut.u": "2 V"}, motions={"q1": lambda t: 0.1 * t}, motion_step=0.1)
     while simulation.t < 0.1 and simulation.step():
         pass
+    moving: sp.Simulation = sp.Simulation(SMOOTH, sensitivity="element.strut.alpha")
+    tangents: tuple[Array, Array, list[str]] = (moving.dq, moving.dv, moving.parameters)
     simulation.step_to("200 ms")
     snapshot: sp.Snapshot = simulation.interpolate(0.5 * (simulation.t_before + simulation.t))
     snapshot = simulation.snapshot()
@@ -201,6 +206,13 @@ def runs(folder: Path) -> None:
     row: dict[str, Any] = metrics[0]
     some: Sequence[dict[str, Any]] = events[:2]
     largest: float = run.metrics["largest"]
+    tangents: sp.Run = sp.run(SMOOTH, sensitivity=["element.strut.alpha", "element.strut.mu"])
+    slopes: list[Array] = [tangents.sensitivity("q.q1"), tangents.sensitivity("q.q1", tangents.parameters[0])]
+    by: dict[str, float] = tangents.gradient("largest")
+    of_case: Array = tangents.case(0).sensitivity("strut.force")
+    lost: list[tuple[str, float, str]] = tangents.case(0).lost
+    value, by = sp.gradient(SMOOTH, "largest", "element.strut.alpha", set={"time.end": 0.1})
+    by = tangents.case(0).gradient("largest")
     table: dict[str, NDArray[Any]] = grid.table()
     files: list[str] = run.save(folder / "run", format="npz", figures=False)
     page: Path = run.view(folder / "view.html", cases=[0], open=False)

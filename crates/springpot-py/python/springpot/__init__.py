@@ -22,6 +22,7 @@ from ._case import Case
 from ._cluster import sweep
 from ._figure import Figure
 from ._law import Master, datasheet, fit, law, laws, master, network, prony
+from ._gradient import gradient
 from ._run import Run, run
 from ._springpot import Bank, Law, Model, Prony, Simulation, SimulationState, Snapshot, __version__
 
@@ -48,6 +49,7 @@ __all__ = [
     "datasheet",
     "fit",
     "fractional",
+    "gradient",
     "law",
     "laws",
     "master",

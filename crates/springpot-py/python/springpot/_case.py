@@ -72,6 +72,39 @@ class Case(Mapping[str, Column]):
         """The unit of every column."""
         return dict(self._units)
 
+    def sensitivity(self, column: str, parameter: str | None = None) -> Column:
+        """The derivative ``(rows,)`` of a column by a parameter, or ``(rows, P)`` by all that the run is differentiated by."""
+        names = [name for name, *_ in self._study.differentiated]
+        if not names:
+            raise ValueError("the run is not differentiated: sp.run(…, sensitivity=[…])")
+        if column not in self._units:
+            raise KeyError(unknown("column", column, list(self._units)))
+        if parameter is not None and parameter not in names:
+            raise KeyError(unknown("parameter", parameter, names))
+        wanted = names if parameter is None else [parameter]
+        missing = [f"d({column})/d({name})" for name in wanted if f"d({column})/d({name})" not in self._units]
+        if missing:
+            raise KeyError(f"the run does not tell {missing[0]}: name {column!r} in `of` of [sensitivity]")
+        found = [self[f"d({column})/d({name})"] for name in wanted]
+        return np.stack(found, axis=1) if parameter is None else found[0]
+
+    def gradient(self, metric: str) -> dict[str, float]:
+        """The derivatives of a metric by parameter, as gradient.csv has them; NaN where there is none."""
+        names = [name for name, *_ in self._study.differentiated]
+        if not names:
+            raise ValueError("the run is not differentiated: sp.run(…, sensitivity=[…])")
+        metrics = [name for name, *_ in self._study.metrics]
+        if metric not in metrics:
+            raise KeyError(unknown("metric", metric, metrics))
+        found = self._case.gradients
+        return dict(zip(names, found[metrics.index(metric)] if found else [float("nan")] * len(names)))
+
+    @property
+    def lost(self) -> list[tuple[str, float, str]]:
+        """Where derivatives end before the run does: parameter, t in s, why."""
+        names = [name for name, *_ in self._study.differentiated]
+        return [(names[parameter], t, why) for parameter, t, why in self._case.lost]
+
     def __getitem__(self, column: str) -> Column:
         found = self._found.get(column)
         if found is None:

@@ -58,7 +58,7 @@ def run(of: Run) -> str:
     if len(of) == 1:
         return case(of.case(0)).replace("<caption>", f"<caption>{escape(title)}", 1)
     failed = f", {len(of.failures)} failed" if of.failures else ""
-    head = ["case", *of.parameters, "rows", "failed"]
+    head = ["case", *of._swept, "rows", "failed"]
 
     def row(one: Case) -> list[Any]:
         return [one.index, *one.parameters.values(), one.rows, "" if one.error is None else str(one.error).splitlines()[0]]

@@ -78,13 +78,13 @@ def _bar(run: Run, chosen: Sequence[Case], colours: Any) -> tuple[Any, list[floa
     # The brightest end is hard to see on white.
     shown = ListedColormap(colours(np.linspace(0.02, 0.85, 256)))
     parameters = [case.parameters for case in chosen]
-    varied = [path for path in run.parameters if len({row[path] for row in parameters}) > 1]
+    varied = [path for path in run._swept if len({row[path] for row in parameters}) > 1]
     read = [row[varied[0]] for row in parameters] if len(varied) == 1 else []
     values = [value for value in read if not isinstance(value, str)]
     if not values or len(values) < len(read):
         values, label = [float(case.index) for case in chosen], "case"
     else:
-        label = run._study.axis(run.parameters.index(varied[0]))
+        label = run._study.axis(run._swept.index(varied[0]))
     low, high = min(values), max(values)
     norm = LogNorm(low, high) if label != "case" and low > 0 and high > WIDE * low else Normalize(low, high)
     return ScalarMappable(norm, shown), values, label
@@ -92,7 +92,7 @@ def _bar(run: Run, chosen: Sequence[Case], colours: Any) -> tuple[Any, list[floa
 
 def _called(run: Run, chosen: Sequence[Case]) -> tuple[str | None, list[str]]:
     """What stands above the legend, and what the cases are called: by what they differ in alone."""
-    paths = run.parameters
+    paths = run._swept
     names = [run._study.name(case.index) for case in chosen]
     read = [re.fullmatch(", ".join(f"{re.escape(path)} = (.*)" for path in paths), name, re.DOTALL) for name in names]
     values = [found.groups() for found in read if found is not None]

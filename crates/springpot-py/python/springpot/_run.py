@@ -84,13 +84,30 @@ class Run:
 
     @property
     def parameters(self) -> list[str]:
-        """Paths of the swept parameters."""
+        """Names of what the run is differentiated by, in the order of ``sensitivity``; of one that is not, the paths of the swept parameters."""
+        return [name for name, *_ in self._study.differentiated] or self._swept
+
+    @property
+    def _swept(self) -> list[str]:
         return self._study.parameters
 
     @property
     def columns(self) -> list[str]:
         """Names of the columns, without those of swept parameters."""
-        return [name for name, _, _ in self._study.columns[len(self.parameters) :]]
+        return [name for name, _, _ in self._study.columns[len(self._swept) :]]
+
+    def sensitivity(self, column: str, parameter: str | None = None) -> Column:
+        """The derivative ``(rows,)`` of a column of the only case by a parameter, or ``(rows, P)`` by all of :attr:`parameters`."""
+        return self._only("sensitivity").sensitivity(column, parameter)
+
+    def gradient(self, metric: str) -> dict[str, float]:
+        """The derivatives of a metric of the only case by parameter, as gradient.csv has them; NaN where there is none."""
+        return self._only("gradient").gradient(metric)
+
+    def _only(self, what: str) -> Case:
+        if len(self._cases) != 1:
+            raise SpringpotError(f"the run has {len(self._cases)} cases: run.case(k).{what}(…) is of one of them")
+        return self._cases[0]
 
     @property
     def units(self) -> dict[str, str]:
@@ -161,9 +178,9 @@ class Run:
     @property
     def events(self) -> Rows:
         """The rows of events.csv: a sequence of dicts, ``run.events["t"]`` is a column."""
-        names = [*self.parameters, "event", *self._study.event_columns]
+        names = [*self._swept, "event", *self._study.event_columns]
         rows: list[dict[str, Any]] = []
-        kept = len(self.parameters)
+        kept = len(self._swept)
         for case in self._cases:
             swept = case.parameters
             for cells in csv.reader(case._case.events.splitlines()):
@@ -187,7 +204,7 @@ class Run:
         """All rows of all cases by column, swept parameters first, as results.csv has them."""
         table: dict[str, npt.NDArray[Any]] = {}
         swept = [self._study.values(case.index) for case in self._cases]
-        for k, parameter in enumerate(self.parameters):
+        for k, parameter in enumerate(self._swept):
             values = [row[k] for row in swept]
             if any(isinstance(value, str) for value in values):
                 # One type for a column: numbers beside texts are the texts that they are in results.csv.

@@ -90,6 +90,19 @@ impl Case {
         self.0.metrics().values.clone()
     }
 
+    /// The derivatives of its metrics, by metric and parameter, in their order; empty where it is not differentiated.
+    #[getter]
+    fn gradients(&self) -> Vec<Vec<f64>> {
+        self.0.metrics().derivatives.gradients.clone()
+    }
+
+    /// Where derivatives end before the run does: parameter, t in s, why.
+    #[getter]
+    fn lost(&self) -> Vec<(usize, f64, String)> {
+        let lost = self.0.metrics().derivatives.lost.iter();
+        lost.map(|lost| (lost.parameter, lost.t, lost.why.clone())).collect()
+    }
+
     /// Its lines in events.csv.
     #[getter]
     fn events(&self) -> &str {
@@ -99,7 +112,8 @@ impl Case {
     /// Smallest, largest and root-mean-square value of every column.
     #[getter]
     fn statistics(&self) -> Vec<(f64, f64, f64)> {
-        self.0.statistics().iter().map(|column| (column.min, column.max, column.rms())).collect()
+        let count = self.0.columns().map_or(0, <[Vec<f64>]>::len);
+        self.0.statistics().iter().take(count).map(|column| (column.min, column.max, column.rms())).collect()
     }
 }
 

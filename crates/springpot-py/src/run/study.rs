@@ -86,6 +86,21 @@ impl Study {
         self.planned.cases.parameters().to_vec()
     }
 
+    /// Name, paths, value and unit of what the first case is differentiated by.
+    #[getter]
+    fn differentiated(&self) -> Vec<(String, Vec<String>, f64, String)> {
+        let sensitivity = self.planned.plan.sensitivity.iter().filter(|plan| plan.is_asked());
+        let parameters = sensitivity.flat_map(|plan| &plan.parameters);
+        parameters.map(|own| (own.name.clone(), own.paths.clone(), own.value, own.unit.clone())).collect()
+    }
+
+    /// What gives the parameters of the first case values, SI, in their order: `PATH=VALUE`.
+    fn assignments(&self, values: Vec<f64>) -> Vec<String> {
+        let sensitivity = self.planned.plan.sensitivity.iter();
+        let parameters = sensitivity.flat_map(|plan| &plan.parameters).zip(values);
+        parameters.flat_map(|(own, value)| own.assignments(value).collect::<Vec<_>>()).collect()
+    }
+
     /// Name, unit and meaning of every column, those of swept parameters first.
     #[getter]
     fn columns(&self) -> Vec<(String, String, String)> {

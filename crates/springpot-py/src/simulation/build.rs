@@ -11,7 +11,7 @@ use crate::quantity::number;
 use crate::scenario::{CATALOG, asked as scenario_asked};
 use numpy::{PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::{PyDict, PyString, PyTuple};
 use springpot::Simulation;
 use springpot::actuation::Drive;
 use springpot::motion::{JointPath, Trajectory};
@@ -32,6 +32,7 @@ pub(super) struct Asked<'a, 'py> {
     pub(super) motions: Option<&'a Bound<'py, PyDict>>,
     pub(super) sample: Option<&'a Bound<'py, PyAny>>,
     pub(super) motion_step: Option<&'a Bound<'py, PyAny>>,
+    pub(super) sensitivity: Option<&'a Bound<'py, PyAny>>,
 }
 
 pub(super) fn build(
@@ -40,11 +41,25 @@ pub(super) fn build(
     set: Option<&Bound<'_, PyAny>>,
     asked: &Asked<'_, '_>,
 ) -> PyResult<PySimulation> {
-    let origin = scenario_asked(scenario, set)?;
+    let mut origin = scenario_asked(scenario, set)?;
+    if let Some(by) = asked.sensitivity {
+        origin.sensitivity = match by.cast::<PyString>() {
+            Ok(one) => vec![one.to_cow()?.into_owned()],
+            Err(_) => by.extract()?,
+        };
+    }
     let scenario = origin.scenario().map_err(|refusals| scenario_error(py, &refusals))?.without_sweeps();
     let plan = interruptible(py, |_| scenario.cases(&CATALOG).and_then(|cases| cases.plan(0)))?;
     let plan = plan.map_err(|refusals| scenario_error(py, &refusals))?;
     let motions = motions(py, &plan, asked)?;
+    let differentiated = plan.sensitivity.as_ref().filter(|plan| plan.is_asked());
+    if differentiated.is_some() && !motions.is_empty() {
+        return Err(value_error(
+            "a simulation with derivatives takes its motions from the scenario: leave `motions` out, or the sensitivity",
+        ));
+    }
+    let parameters =
+        differentiated.map_or_else(Vec::new, |plan| plan.parameters.iter().map(|own| own.name.clone()).collect());
     let made = interruptible(py, |stop| {
         let mut system = plan.system_unless(stop);
         if !motions.is_empty() {
@@ -86,6 +101,7 @@ pub(super) fn build(
         robot: Py::new(py, PyModel::of(py, robot, Origin::Scenario(origin))?)?,
         columns: Arc::new(columns),
         quantities,
+        parameters,
         v_names: model.v_labels().into_iter().map(|label| label.name).collect(),
         inner: Mutex::new(Inner { simulation, callbacks, driven, own, control }),
         model,

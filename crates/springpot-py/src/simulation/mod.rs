@@ -13,7 +13,7 @@ use crate::array::{Rows, numbers};
 use crate::error::{guarded, run_error, run_error_at, type_error, value_error};
 use crate::model::PyModel;
 use crate::quantity::number;
-use numpy::PyArray1;
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::gc::{PyTraverseError, PyVisit};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
@@ -44,6 +44,8 @@ pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
 ///         0 to the end; what moves is the C² spline through their values, whose derivatives are its velocity and acceleration.
 ///     sample: seconds between two times at which callables are asked, 0 included; a number or a text such as ``"1 ms"``.
 ///     motion_step: step of the grid of motions, s; the thousandth part of the run where left out.
+///     sensitivity: paths of numbers, or names of parameters, by which it is differentiated besides those of the scenario: ``dq``, ``dv`` and the
+///         columns ``d(…)/d(…)`` of snapshots. What is held from outside, and what callables give, does not move with them.
 ///
 /// Callables of one instant see what was before any of them acts, and none is asked at the end. An exception that one raises comes through as
 /// it is; the simulation is then where it was. A step ends at the next sample at the latest. Whoever calls a simulation that is at work, from
@@ -78,6 +80,8 @@ pub(crate) struct PySimulation {
     /// How the values of the columns are found.
     quantities: Vec<Quantity>,
     v_names: Vec<String>,
+    /// By what it is differentiated.
+    parameters: Vec<String>,
     end: f64,
 }
 
@@ -120,6 +124,15 @@ impl PySimulation {
         guarded(py, || work(&mut *self.lock(py)?))
     }
 
+    /// Derivatives of q (0) or v (1).
+    fn tangents<'py>(&self, py: Python<'py>, which: usize) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        self.with(py, |inner| {
+            let mut found = inner.simulation.tangents().map_err(|error| failed(py, &error))?;
+            let rows = if which == 0 { self.model.nq() } else { self.model.nv() };
+            PyArray1::from_vec(py, std::mem::take(&mut found[which])).reshape([rows, self.parameters.len()])
+        })
+    }
+
     /// Which velocity is called so, or has that index.
     fn velocity(&self, joint: &Bound<'_, PyAny>) -> PyResult<usize> {
         let nv = self.v_names.len();
@@ -146,7 +159,7 @@ impl PySimulation {
 #[pymethods]
 impl PySimulation {
     #[new]
-    #[pyo3(signature = (scenario, *, set=None, controller=None, inputs=None, motions=None, sample=None, motion_step=None))]
+    #[pyo3(signature = (scenario, *, set=None, controller=None, inputs=None, motions=None, sample=None, motion_step=None, sensitivity=None))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn new(
         py: Python<'_>,
@@ -157,8 +170,9 @@ impl PySimulation {
         motions: Option<&Bound<'_, PyDict>>,
         sample: Option<&Bound<'_, PyAny>>,
         motion_step: Option<&Bound<'_, PyAny>>,
+        sensitivity: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let asked = build::Asked { controller, inputs, motions, sample, motion_step };
+        let asked = build::Asked { controller, inputs, motions, sample, motion_step, sensitivity };
         guarded(py, || build::build(py, scenario, set, &asked))
     }
 
@@ -190,6 +204,24 @@ impl PySimulation {
     #[getter]
     fn v<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         self.with(py, |inner| Ok(PyArray1::from_slice(py, inner.simulation.v())))
+    }
+
+    /// Names of what it is differentiated by, in the order of the last axis of ``dq`` and ``dv``.
+    #[getter]
+    fn parameters(&self) -> Vec<String> {
+        self.parameters.clone()
+    }
+
+    /// Derivatives of q by the parameters, shape ``(nq, P)``.
+    #[getter]
+    fn dq<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        self.tangents(py, 0)
+    }
+
+    /// Derivatives of v by the parameters, shape ``(nv, P)``.
+    #[getter]
+    fn dv<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        self.tangents(py, 1)
     }
 
     /// The robot.

@@ -236,6 +236,27 @@ impl Simulation {
         self.driver.lost()
     }
 
+    /// The derivatives of q and v at the present time by the parameters of [`System::sensitivity`]: nq × P and nv × P, row by row; empty where there
+    /// are none. Torques and inputs that are held from outside stay what they are.
+    ///
+    /// # Errors
+    /// As of [`Self::interpolate`].
+    pub fn tangents(&mut self) -> Result<[Vec<f64>; 2], RunError> {
+        let mut snapshot = Snapshot::new(&self.system);
+        while self.driver.is_disturbed() {
+            self.cross()?;
+        }
+        let t = self.t();
+        let theta = self.driver.read(self.events.cx(&self.system), t, 0, &mut snapshot)?;
+        let (nq, nv) = (self.system.model.nq(), self.system.model.nv());
+        let Some(variation) = self.driver.vary(theta, &snapshot, true) else { return Ok(Default::default()) };
+        let all = |count: usize, of: fn(usize) -> Quantity| {
+            let unknown = || vec![f64::NAN; variation.count()];
+            (0..count).flat_map(|k| variation.values(of(k), &snapshot).unwrap_or_else(unknown)).collect()
+        };
+        Ok([all(nq, Quantity::Coordinate), all(nv, Quantity::Velocity)])
+    }
+
     /// All that is known at a time of the last step, from [`Self::t_before`] to [`Self::t`].
     ///
     /// # Errors
