@@ -95,6 +95,7 @@ pub mod model;
 pub mod motion;
 pub mod names;
 pub mod observe;
+pub mod optimisation;
 mod random;
 pub mod sensitivity;
 pub mod signal;
