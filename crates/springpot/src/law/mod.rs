@@ -47,6 +47,7 @@ mod prandtl_ishlinskii;
 mod rule;
 mod standard;
 mod thermoviscoelastic;
+mod transient;
 mod written;
 
 pub use crate::fractional::Kind as Derivative;

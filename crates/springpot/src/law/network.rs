@@ -579,6 +579,12 @@ impl Network {
         [modulus.re, modulus.im]
     }
 
+    /// [`Self::modulus`] at s, and what it changes by with the parameter that the numbers of its leaves carry while s changes as the second
+    /// number says; `None` where a leaf does not know.
+    pub fn modulus_slope(&self, at: &Point, s: [Complex64; 2]) -> Option<[Complex64; 2]> {
+        self.ask().modulus_slope(at, s)
+    }
+
     /// K' and K'', N/m, of the first harmonic of F under x = x_0 + A·sin ωt since ever, x_0 the stroke of `at`, A > 0 the `amplitude`, m, ω > 0 `omega`,
     /// rad/s: K* = (1/πA) ∮ F·(sin ωt + i cos ωt) d(ωt). A turn loses π K'' A². Of a linear law it is [`Self::complex_modulus`].
     ///

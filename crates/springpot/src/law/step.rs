@@ -1,6 +1,7 @@
 //! What laws are asked, and what they answer.
 
 use crate::collocation::{MAX_NODES, Nodes, Places, quadrature, quadrature_defect};
+use crate::dual::Dual;
 use crate::fractional::{Form, RatePolynomial, StepStart};
 use serde::{Deserialize, Serialize};
 
@@ -24,6 +25,14 @@ pub struct Point<'a, T = f64> {
     pub rate: T,
     /// Inputs in the order of the catalog.
     pub inputs: &'a [InputValue<T>],
+}
+
+impl Point<'_> {
+    /// Its inputs as numbers without derivatives.
+    pub(super) fn inputs_as_numbers(&self) -> Vec<InputValue<Dual>> {
+        let number = |input: &InputValue| InputValue { value: input.value.into(), rate: input.rate.into() };
+        self.inputs.iter().map(number).collect()
+    }
 }
 
 /// One step: its data at the start (index 0) and at the nodes (1 … s), as [`Point`] has them.

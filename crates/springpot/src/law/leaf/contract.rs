@@ -119,6 +119,13 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
     /// What it is like under small and fast strokes about `at`.
     fn linearised(&self, at: &Point) -> Term;
 
+    /// What the parameter that its numbers carry changes of coefficient and order of [`Leaf::linearised`]; `None` where that is not known.
+    fn linearised_slope(&self, _at: &Point) -> Option<Term> {
+        let mut moves = false;
+        let known = self.numbers(&mut |number| moves |= number.slope != 0.0);
+        (known && !moves).then_some(Term { coefficient: 0.0, order: 0.0 })
+    }
+
     /// K* = K' + iK'', N/m, of the first harmonic of its force under a sine of its stroke about that of `at` since ever, of this `amplitude`, m, at the rate
     /// `omega`, rad/s, where there is a formula. What is linear needs none, and what keeps nothing is integrated.
     fn harmonic(&self, _at: &Point, _amplitude: f64, _omega: f64) -> Option<Complex64> {

@@ -85,6 +85,10 @@ impl Leaf for Dashpot {
         Term { coefficient: self.viscosity.value, order: 1.0 }
     }
 
+    fn linearised_slope(&self, _: &Point) -> Option<Term> {
+        Some(Term { coefficient: self.viscosity.slope, order: 0.0 })
+    }
+
     fn is_linear(&self) -> bool {
         true
     }

@@ -90,6 +90,19 @@ impl<T: Elastic> Leaf for T {
         Term { coefficient: self.slope(at.stroke).abs(), order: 0.0 }
     }
 
+    fn linearised_slope(&self, _: &Point) -> Option<Term> {
+        if !Elastic::is_linear(self) {
+            return None;
+        }
+        let (mut numbers, mut by_numbers, mut at_zero) = (Vec::new(), Vec::new(), Vec::new());
+        let known = Elastic::numbers(self, &mut |number| numbers.push(number));
+        self.by_numbers(1.0, &mut |[force, _]| by_numbers.push(force));
+        self.by_numbers(0.0, &mut |[force, _]| at_zero.push(force));
+        let each = numbers.iter().zip(by_numbers.iter().zip(&at_zero));
+        let coefficient = each.map(|(number, (one, zero))| number.slope * (one - zero)).sum();
+        known.then_some(Term { coefficient, order: 0.0 })
+    }
+
     fn at_rest(&self, at: &Point, _: f64) -> LeafAtRest {
         let slope = self.slope(at.stroke);
         let stiffness = (Elastic::holds(self) != Holds::Never).then_some(slope);

@@ -470,6 +470,11 @@ impl Leaf for Springpot {
         Term { coefficient: self.coefficient.at(at.inputs).value, order: self.alpha.value }
     }
 
+    fn linearised_slope(&self, at: &Point) -> Option<Term> {
+        let coefficient = self.coefficient.at(&at.inputs_as_numbers()).value.slope;
+        Some(Term { coefficient, order: self.alpha.slope })
+    }
+
     fn at_rest(&self, at: &Point, held: f64) -> LeafAtRest {
         let term = self.linearised(at);
         let Term { coefficient, order } = term;

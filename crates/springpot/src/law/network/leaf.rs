@@ -160,6 +160,15 @@ impl Part for LeafPart {
         coefficient * if order == 0.0 { Complex64::ONE } else { s.powf(order) }
     }
 
+    fn modulus_slope(&self, at: &Point, [s, by]: [Complex64; 2]) -> Option<[Complex64; 2]> {
+        let Term { coefficient, order } = self.leaf.linearised(at);
+        let changed = self.leaf.linearised_slope(at)?;
+        let power = if order == 0.0 { Complex64::ONE } else { s.powf(order) };
+        let by_order = if changed.order == 0.0 { Complex64::ZERO } else { changed.order * s.ln() };
+        let by_s = if order == 0.0 { Complex64::ZERO } else { order * by / s };
+        Some([coefficient * power, power * (changed.coefficient + coefficient * (by_order + by_s))])
+    }
+
     fn harmonic(&self, sine: &Sine) -> Option<Complex64> {
         if self.leaf.is_linear() {
             return Some(Part::modulus(self, &sine.at, Complex64::new(0.0, sine.omega)));

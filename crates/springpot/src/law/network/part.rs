@@ -186,6 +186,14 @@ pub(in crate::law) trait Part: std::fmt::Debug {
         self.parts().iter().map(|part| part.ask().modulus(at, s)).sum()
     }
 
+    /// [`Network::modulus_slope`].
+    fn modulus_slope(&self, at: &Point, s: [Complex64; 2]) -> Option<[Complex64; 2]> {
+        self.parts().iter().try_fold([Complex64::ZERO; 2], |[value, slope], part| {
+            let [own, by] = part.ask().modulus_slope(at, s)?;
+            Some([value + own, slope + by])
+        })
+    }
+
     /// K* of the first harmonic under a sine since ever, linear or not; `None` where no steady turn is found.
     fn harmonic(&self, sine: &Sine) -> Option<Complex64> {
         self.parts().iter().map(|part| part.ask().harmonic(sine)).sum()

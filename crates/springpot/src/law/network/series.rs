@@ -521,6 +521,20 @@ impl Part for Series {
         compliance.map_or(Complex64::ZERO, |compliance| compliance.inv())
     }
 
+    fn modulus_slope(&self, at: &Point, s: [Complex64; 2]) -> Option<[Complex64; 2]> {
+        let moduli = self.parts.iter().map(|part| part.ask().modulus_slope(at, s)).collect::<Option<Vec<_>>>()?;
+        let slack: Vec<&[Complex64; 2]> = moduli.iter().filter(|[own, _]| *own == Complex64::ZERO).collect();
+        match slack[..] {
+            [] => {}
+            // What carries nothing is all that tells, where it is alone.
+            [[own, slope]] => return Some([*own, *slope]),
+            _ => return Some([Complex64::ZERO; 2]),
+        }
+        let whole = moduli.iter().map(|[own, _]| own.inv()).sum::<Complex64>().inv();
+        let slope: Complex64 = moduli.iter().map(|[own, slope]| slope * (whole / own).powi(2)).sum();
+        Some([whole, slope])
+    }
+
     /// That of the softest part.
     fn asymptote(&self, at: &Point, onset: Onset) -> Term {
         let own = |(k, part): (usize, &Network)| match self.play() {

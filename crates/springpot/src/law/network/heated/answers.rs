@@ -225,6 +225,11 @@ impl Part for Heated {
         self.law.modulus(&place.point(), s * place.factor)
     }
 
+    fn modulus_slope(&self, at: &Point, s: [Complex64; 2]) -> Option<[Complex64; 2]> {
+        let place = self.still(at);
+        self.law.modulus_slope(&place.point(), s.map(|s| s * place.factor))
+    }
+
     /// At the temperature of the inputs, or of the start.
     fn harmonic(&self, sine: &Sine) -> Option<Complex64> {
         let place = self.still(&sine.at);
