@@ -192,6 +192,20 @@ E' [MPa], T [degC]. Each temperature's curve is shifted onto its neighbour; WLF 
 
 Exit codes: 0 done, 1 curves do not overlap or a file cannot be written, 2 the table was refused.")]
     Master(MasterOptions),
+    /// Fit parameters of a scenario to measurements.
+    #[command(after_help = "\
+Examples:
+  springpot fit pad.toml
+  springpot fit pad.toml --laws springpot,fractional-kelvin-voigt --out pad-fit
+  springpot fit arm.toml --starts 4 --intervals profile --strict
+
+[[data]] names CSV files and their columns, [[parameter]] what is sought, [fit] how. Data are moduli, relaxation or creep of an element, its force along \
+a measured stroke, or columns of a run; a file whose data are all of elements needs no robot, motion or time. Into the folder --out: fit.json, parameters.csv, \
+correlation.csv, residuals.csv, fitted.toml, and figures. `springpot check` says beforehand what the data can determine.
+
+Exit codes: 0 done, 1 not converged, no start could be evaluated, or --strict and something is not determined, 2 the scenario or its data were refused, 130 \
+interrupted: the best so far is written.")]
+    Fit(FitOptions),
     /// Draw columns of a finished run.
     #[command(after_help = "\
 Examples:
@@ -327,6 +341,34 @@ pub(crate) struct LawsOptions {
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct FitOptions {
+    /// Scenario file (TOML) with [[data]] and [[parameter]]
+    #[arg(value_name = "SCENARIO")]
+    pub(crate) file: PathBuf,
+    /// Override a value of the file, such as element.strut.alpha=0.5; PATH= takes the key out; may be given several times
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub(crate) overrides: Vec<String>,
+    /// Number of starts, in place of that of [fit]
+    #[arg(long, value_name = "N")]
+    pub(crate) starts: Option<u32>,
+    /// How intervals are found, in place of that of [fit]: wald, profile or bootstrap(COUNT)
+    #[arg(long, value_name = "HOW")]
+    pub(crate) intervals: Option<String>,
+    /// Laws to be fitted one after the other, in place of those of [fit]
+    #[arg(long, value_name = "LAW,...", value_delimiter = ',')]
+    pub(crate) laws: Vec<String>,
+    /// Folder for the files [default: results/SCENARIO]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print fit.json
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Exit with 1 where parameters are not determined
+    #[arg(long)]
+    pub(crate) strict: bool,
 }
 
 #[derive(Debug, Args)]

@@ -148,6 +148,7 @@ fn command(catalog: &Catalog, disk: &Disk, arguments: &[OsString]) -> u8 {
         Command::Derivative(options) => material::derivative::derivative(&options),
         Command::Laws(options) => material::laws::laws(&options, catalog),
         Command::Master(options) => material::master::master(&options, catalog),
+        Command::Fit(options) => scenario::fit::fit_command(&options, catalog),
         Command::Plot(options) => results::plot::plot(&options),
         Command::Metrics(options) => results::metrics::metrics(&options, disk),
         Command::View(options) => results::view::view(&options, disk),

@@ -6,6 +6,7 @@ mod array;
 mod bank;
 mod command;
 mod error;
+mod fit;
 mod fractional;
 mod interrupt;
 mod law;
@@ -24,6 +25,7 @@ use pyo3::prelude::*;
 fn _springpot(module: &Bound<'_, PyModule>) -> PyResult<()> {
     bank::register(module)?;
     command::register(module)?;
+    fit::register(module)?;
     fractional::register(module)?;
     law::register(module)?;
     model::register(module)?;

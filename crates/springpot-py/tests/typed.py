@@ -241,6 +241,23 @@ def master_curves() -> None:
     print(curve.shift, curve.log10_a_T, curve.wlf, curve.arrhenius["energy"])
 
 
+def fits(scratch: Path) -> None:
+    t = np.geomspace(0.01, 100.0, 9)
+    records = {"tap": {"t": t, "G": 50.0 * t**-0.5 / np.sqrt(np.pi)}}
+    scenario = {
+        "element": [{"name": "pad", "law": "springpot", "parameters": {"c": 10, "alpha": 0.4}}],
+        "parameter": [{"name": "c", "path": "element.pad.c"}, {"name": "alpha", "path": "element.pad.alpha"}],
+        "data": [{"name": "tap", "kind": "relaxation", "element": "pad", "csv": "tap.csv", "columns": {"t": "t", "relaxation": "G"}}],
+    }
+    found: sp.Fit = sp.fit(scenario, records)
+    alpha: sp.Parameter = found.parameters["alpha"]
+    print(found.status, alpha.value, alpha.sd, alpha.interval, found.covariance, found.correlation, found.undetermined)
+    print(found.residuals["tap"]["relaxation"], found.scenario, found)
+    found.save(scratch / "fit")
+    problem: sp.Problem = sp.problem(scenario, records)
+    print(problem.names, problem.units, problem.bounds, problem.residuals(problem.start), problem.jacobian(problem.start))
+
+
 def mistakes() -> None:
     warnings.simplefilter("ignore", category=sp.SpringpotWarning)
     try:
@@ -266,4 +283,5 @@ engines()
 calculus()
 with tempfile.TemporaryDirectory() as scratch:
     runs(Path(scratch))
+    fits(Path(scratch))
 mistakes()

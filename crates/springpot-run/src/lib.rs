@@ -37,6 +37,7 @@ mod checks;
 mod export;
 pub mod figures;
 mod finish;
+pub mod fit;
 mod follow;
 pub mod labels;
 mod meshes;

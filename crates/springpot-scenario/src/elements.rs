@@ -183,7 +183,7 @@ impl Materials {
     }
 
     fn element(self, table: &Table<'_>, Shape { measure, plan, ends }: Shape) -> Read<ElementPlan> {
-        let Material { law, is_network, files, parameters, inputs } = self.material;
+        let Material { law, is_network, files, parameters, inputs, .. } = self.material;
         let (is_length, is_rotation) = (matches!(plan, ShapePlan::Points(_)), measure.is_rotation());
         let (parameters, (derivative, past)) = (parameters?, self.past?);
         let element = Element::new("", measure, 0.0, &law, &parameters, derivative).map_err(|_| Refused);

@@ -38,6 +38,7 @@ mod changes;
 pub mod csv;
 mod elements;
 mod figures;
+mod fit;
 mod keys;
 mod motion;
 mod plan;
@@ -57,6 +58,10 @@ pub use figures::{
     AxisLook, ColumnGlob, FIGURE_SIDES, FigureFormat, FigureKind, FigureLabel, FigureNumbers, FigurePlan, FigurePoints,
     FigureUnit, LOOK_OPTIONS, Look, LookOption, RangeEnd, Said, Selection, Spelt, Statistic, Summarised, SweptAxis,
     Takes,
+};
+pub use fit::{
+    DataColumn, DataKind, DataPlan, FitParameter, FitPlan, FitSettings, Fitting, Intervals, MaterialAt, Moved,
+    PastOfStroke, Role,
 };
 pub use keys::{MAX_CASES, MetricKind};
 pub use motion::MotionPlan;

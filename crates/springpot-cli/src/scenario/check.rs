@@ -1,7 +1,7 @@
 //! `springpot check`.
 
 use crate::arguments::CheckOptions;
-use crate::scenario::{failures, starts, swept};
+use crate::scenario::{failures, fit, starts, swept};
 use crate::{Ending, diagnostic, plain, printed, signals, terminal};
 use springpot::elements::Element;
 use springpot::equations::ElementStart;
@@ -42,6 +42,14 @@ fn describe(file: &Path, options: &CheckOptions, catalog: &Catalog) -> Result<En
     let mut scenario = diagnostic::scenario(file, &options.overrides)?;
     options.sweeps.iter().try_for_each(|assignment| scenario.sweep(assignment))?;
     options.sensitivity.iter().try_for_each(|paths| scenario.differentiate(paths))?;
+    if scenario.is_of_elements() && options.sweeps.is_empty() {
+        let (lines, warnings) = fit::ahead(&scenario, catalog)?;
+        let ending = if options.quiet { Ending::Done } else { printed(terminal::try_print(&of_data(&lines))) };
+        warnings.into_iter().for_each(|warning| diagnostic::warning(warning, None));
+        return Ok(ending);
+    }
+    let measured = scenario.has_data().then(|| fit::ahead(&scenario, catalog)).transpose()?;
+    let (measured, warnings) = measured.unwrap_or_default();
     let cases = scenario.cases(catalog)?;
     let plan = cases.plan(0)?;
     let system = plan.system();
@@ -60,8 +68,9 @@ fn describe(file: &Path, options: &CheckOptions, catalog: &Catalog) -> Result<En
     };
     let ending = match options.quiet {
         true => Ending::Done,
-        false => printed(terminal::try_print(&text(&cases, &plan, switches, &survey))),
+        false => printed(terminal::try_print(&(text(&cases, &plan, switches, &survey) + &of_data(&measured)))),
     };
+    warnings.into_iter().for_each(|warning| diagnostic::warning(warning, None));
     diagnostic::robot_warnings(&cases);
     starts::warn(&survey, &cases);
     starts::warn_of_limits(&survey, &cases);
@@ -72,6 +81,19 @@ fn describe(file: &Path, options: &CheckOptions, catalog: &Catalog) -> Result<En
         false if survey.refused > 0 && survey.is_hopeless(&cases) => Ending::Refused,
         false => Ending::Failed,
     })
+}
+
+/// What is said of measurements.
+fn of_data(lines: &[(String, String)]) -> String {
+    let width = terminal::stdout_width().or(Some(80));
+    let mut last = "";
+    let mut text = String::new();
+    for (lead, words) in lines {
+        let shown = if lead == last { "" } else { lead.as_str() };
+        text.push_str(&terminal::hanging(&format!("{shown:<10}"), &plain::words(words), width));
+        last = lead;
+    }
+    text
 }
 
 /// The description of a scenario.

@@ -1,7 +1,8 @@
-//! Commands about a scenario: init, check, run, merge, sensitivity.
+//! Commands about a scenario: init, check, run, merge, sensitivity, fit.
 
 pub(crate) mod check;
 pub(crate) mod failures;
+pub(crate) mod fit;
 pub(crate) mod init;
 pub(crate) mod run;
 pub(crate) mod sensitivity;

@@ -21,8 +21,9 @@ from ._errors import ModelError, RunError, ScenarioError, SpringpotError, Spring
 from ._case import Case
 from ._cluster import sweep
 from ._figure import Figure
-from ._law import Master, datasheet, fit, law, laws, master, network, prony
+from ._fit import Fit, Parameter, Problem, fit, problem
 from ._gradient import gradient
+from ._law import Master, datasheet, law, laws, master, network, prony
 from ._run import Run, run
 from ._springpot import Bank, Law, Model, Prony, Simulation, SimulationState, Snapshot, __version__
 
@@ -32,10 +33,13 @@ __all__ = [
     "Bank",
     "Case",
     "Figure",
+    "Fit",
     "Law",
     "Master",
     "Model",
     "ModelError",
+    "Parameter",
+    "Problem",
     "Prony",
     "Run",
     "RunError",
@@ -54,6 +58,7 @@ __all__ = [
     "laws",
     "master",
     "network",
+    "problem",
     "prony",
     "run",
     "sweep",

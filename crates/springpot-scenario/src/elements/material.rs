@@ -30,6 +30,9 @@ type Files = Vec<(String, String)>;
 /// The law of an element, its parameters (SI, in the order of the law), and its inputs.
 pub(crate) struct Material {
     pub(crate) law: Arc<Entry>,
+    /// It without what temperature does to it.
+    pub(crate) cold: Arc<Entry>,
+    pub(crate) heat: Heat,
     /// It is written as a network.
     pub(crate) is_network: bool,
     pub(crate) files: Files,
@@ -64,9 +67,10 @@ pub(crate) fn read(table: &Table<'_>, is_rotation: bool, with: InputsOf<'_>) -> 
     // What the parameters lack is told beside what is wrong with the heat.
     let parameters = parameters(table, &law, &lists, &names);
     let heat = heat::read(table, is_rotation)?;
+    let cold = law.clone();
     let law = if heat.is_none() { law } else { Arc::new(law.with_heat(heat).map_err(|_| Refused)?) };
     let inputs = inputs(table, &law, &heat, with);
-    Ok(Material { law, is_network: table.get("network").is_some(), files, parameters, inputs })
+    Ok(Material { law, cold, heat, is_network: table.get("network").is_some(), files, parameters, inputs })
 }
 
 /// The law where it acts on an angle: N reads N·m and m reads rad.

@@ -5,6 +5,7 @@
 
 mod constants;
 mod controller;
+mod data;
 mod element;
 mod event;
 mod heat;
@@ -23,6 +24,7 @@ pub(crate) use constants::SCALAR;
 pub(crate) use controller::{
     CONDITIONAL, CONTROLLER, ControllerKind, GRIPPER_PATH, Gained, Gains, MOVE, NONE, REFERENCE, TRAPEZOID,
 };
+pub(crate) use data::{CREEP, DATA, DATA_COLUMN, DMA, FIT, HUBER, RELAXATION, RUN, STROKE};
 pub(crate) use element::{
     BETWEEN, BUSHING, COMPONENT, COMPONENTS, ELEMENT, ELEMENT_FIELDS, END, HELD, LONE, ON_JOINT, PASTS, RESERVED_NAMES,
     START as AT_START,
@@ -148,6 +150,8 @@ pub(crate) enum Shape {
     TextOrFalse,
     /// An array of these words.
     WordList(fn() -> Vec<&'static str>),
+    /// A table of columns of a file, each a name or a table, under names that other keys give.
+    ColumnsByName(&'static Keys),
     /// A table of anything under names that other keys give.
     ByName,
     /// A table of numbers in any units, under names of its own.

@@ -14,6 +14,7 @@ fn inner(key: &Key) -> Option<&'static Keys> {
         Shape::Table(keys)
         | Shape::Tables(keys, _)
         | Shape::TableOrTables(keys)
+        | Shape::ColumnsByName(keys)
         | Shape::ValuesOr(keys)
         | Shape::NumbersOr(_, keys)
         | Shape::WordsOr(_, keys)
@@ -189,7 +190,7 @@ fn the_pages_have_the_same_keys() {
         |kind: MotionKind| -> Vec<&'static Key> { MOTION.of(kind.name()).filter(|key| !key.only.is_empty()).collect() };
     let all = |keys: &'static Keys| -> Vec<&'static Key> { keys.keys.iter().collect() };
     // The two keys of prescribed joints stand in sentences.
-    let sections: [(Places, Vec<&'static Key>); 20] = [
+    let sections: [(Places, Vec<&'static Key>); 22] = [
         (&[("robot", "[robot]"), ("urdf", "Keys")], all(&ROBOT)),
         (&[("robot", "Bodies")], all(&BODY)),
         (&[("robot", "Joints")], all(&JOINT)),
@@ -209,6 +210,8 @@ fn the_pages_have_the_same_keys() {
         (&[("sweep", "[[sweep]]")], all(&SWEEP)),
         (&[("sensitivity", "[[parameter]]")], all(&PARAMETER)),
         (&[("sensitivity", "[sensitivity]")], all(&SENSITIVITY)),
+        (&[("fit", "[[data]]")], all(&DATA)),
+        (&[("fit", "[fit]")], all(&FIT)),
         (&[("figures", "[[figure]]")], all(&FIGURE)),
     ];
     let mut compared = 0;
@@ -256,6 +259,8 @@ fn the_pages_have_the_same_keys() {
         &END_STOPS,
         &REFERENCE,
         &PRIOR,
+        &DATA_COLUMN,
+        &HUBER,
     ] {
         for key in keys.keys {
             let named = [
@@ -296,6 +301,8 @@ fn the_index_leads_to_every_key() {
         ("## [[sweep]]", &[&SWEEP, &SPAN]),
         ("## [[parameter]]", &[&PARAMETER, &PRIOR]),
         ("## [sensitivity]", &[&SENSITIVITY]),
+        ("## [[data]]", &[&DATA, &DATA_COLUMN, &HUBER]),
+        ("## [fit]", &[&FIT]),
         ("## [[figure]]", &[&FIGURE, &POINTS]),
         ("## [output]", &[&OUTPUT]),
     ] {

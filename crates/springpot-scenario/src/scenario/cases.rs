@@ -582,7 +582,7 @@ fn are_alike(some: &[MetricPlan], others: &[MetricPlan]) -> bool {
 }
 
 /// The whole scenario, its constants known to the context.
-fn root<'a>(ctx: &'a Context<'a>, document: &'a Node) -> Read<Table<'a>> {
+pub(crate) fn root<'a>(ctx: &'a Context<'a>, document: &'a Node) -> Read<Table<'a>> {
     let root = Table::of(ctx, document, "the scenario", &SCENARIO)?;
     // What else is wrong is told all the same.
     _ = constants::read(&root);
@@ -590,7 +590,7 @@ fn root<'a>(ctx: &'a Context<'a>, document: &'a Node) -> Read<Table<'a>> {
 }
 
 /// Reads everything but sweeps and what is the same in every case.
-fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
+pub(crate) fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
     let root = root(ctx, document)?;
     let title = root.get("title").map(|field| field.text().map(str::to_owned)).transpose();
     let time = time::read(&root);

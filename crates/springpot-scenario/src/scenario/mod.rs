@@ -1,13 +1,13 @@
 //! A whole scenario: as it is written, with what the command line says in its place, and the cases that its sweeps make of it.
 
-mod cases;
+pub(crate) mod cases;
 mod inputs;
 mod lone;
-mod overrides;
+pub(crate) mod overrides;
 mod portable;
 pub(crate) mod root;
 mod schema;
-mod written;
+pub(crate) mod written;
 
 pub use cases::{Cases, SweptValue};
 pub use lone::LoneElement;

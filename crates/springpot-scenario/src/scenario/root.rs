@@ -3,8 +3,8 @@
 use crate::figures::FIGURE;
 use crate::keys::MOTION;
 use crate::keys::{
-    ELEMENT, EVENT, Keys, MAX_BLOCKS, METRIC, Need, OUTPUT, PARAMETER, ROBOT, SENSITIVITY, SOLVER, SWEEP, Shape, TIME,
-    key,
+    DATA, ELEMENT, EVENT, FIT, Keys, MAX_BLOCKS, METRIC, Need, OUTPUT, PARAMETER, ROBOT, SENSITIVITY, SOLVER, SWEEP,
+    Shape, TIME, key,
 };
 
 /// The whole scenario.
@@ -43,6 +43,8 @@ pub(crate) static SCENARIO: Keys = Keys {
         ),
         key("parameter", Shape::Tables(&PARAMETER, None), Need::Optional, "Numbers that may be changed."),
         key("sensitivity", Shape::Table(&SENSITIVITY), Need::Optional, "Derivatives of the columns."),
+        key("data", Shape::Tables(&DATA, None), Need::Optional, "Measurements, for `springpot fit`."),
+        key("fit", Shape::Table(&FIT), Need::Optional, "How parameters are fitted to them."),
         key("figure", Shape::Tables(&FIGURE, None), Need::Optional, "Figures to draw."),
         key("output", Shape::Table(&OUTPUT), Need::Optional, "What is written."),
     ],

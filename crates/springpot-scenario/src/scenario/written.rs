@@ -20,10 +20,10 @@ pub(crate) struct Override {
 /// A scenario as written: a TOML document and the overrides of `--set`.
 #[derive(Debug, Clone)]
 pub struct Scenario {
-    pub(super) document: Node,
-    pub(super) source: Arc<Source>,
-    pub(super) folder: PathBuf,
-    pub(super) overrides: Vec<Override>,
+    pub(crate) document: Node,
+    pub(crate) source: Arc<Source>,
+    pub(crate) folder: PathBuf,
+    pub(crate) overrides: Vec<Override>,
     /// Sweeps that take the place of its own, or stand beside them: paths and `values`.
     pub(super) sweeps: Vec<Override>,
     /// By what it is differentiated besides.
@@ -100,6 +100,11 @@ impl Scenario {
             sweeps: Vec::new(),
             sensitivity: Vec::new(),
         })
+    }
+
+    /// The folder that paths in it are relative to.
+    pub fn folder(&self) -> &Path {
+        &self.folder
     }
 
     /// The text as written.

@@ -22,24 +22,24 @@ pub(crate) struct More {
 }
 
 /// By what is differentiated, and what.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Asked {
     /// The numbers; where nothing is differentiated those of the blocks.
-    pub(super) by: Vec<By>,
-    pub(super) of: Option<Vec<ColumnGlob>>,
-    pub(super) control: bool,
+    pub(crate) by: Vec<By>,
+    pub(crate) of: Option<Vec<ColumnGlob>>,
+    pub(crate) control: bool,
     /// Whether anything is to be differentiated.
-    pub(super) is_asked: bool,
+    pub(crate) is_asked: bool,
 }
 
 /// A number that is differentiated by.
 #[derive(Debug, Clone)]
-pub(super) struct By {
-    pub(super) name: String,
-    pub(super) targets: Vec<Target>,
+pub(crate) struct By {
+    pub(crate) name: String,
+    pub(crate) targets: Vec<Target>,
     /// Its block among those of the file.
-    pub(super) block: Option<usize>,
-    pub(super) place: Place,
+    pub(crate) block: Option<usize>,
+    pub(crate) place: Place,
 }
 
 /// Reads both tables; `more` stands beside `by`.
@@ -103,7 +103,7 @@ pub(crate) fn read(root: &Table<'_>, axes: &[Axis], more: &[More]) -> Read<Optio
 }
 
 /// Refuses two parameters on one place.
-fn apart(ctx: &Context<'_>, by: &[By]) -> Read<()> {
+pub(crate) fn apart(ctx: &Context<'_>, by: &[By]) -> Read<()> {
     let all: Vec<(&By, &Target)> = by.iter().flat_map(|by| by.targets.iter().map(move |target| (by, target))).collect();
     for (k, (own, target)) in all.iter().enumerate() {
         if let Some((earlier, _)) = all[..k].iter().find(|(_, earlier)| earlier.overlaps(target)) {
@@ -116,7 +116,8 @@ fn apart(ctx: &Context<'_>, by: &[By]) -> Read<()> {
     Ok(())
 }
 
-fn blocks(root: &Table<'_>, field: &Field<'_>) -> Read<Vec<By>> {
+/// The numbers of all `[[parameter]]`.
+pub(crate) fn blocks(root: &Table<'_>, field: &Field<'_>) -> Read<Vec<By>> {
     let items = field.items("an array of tables: [[parameter]]")?;
     let mut seen = HashMap::new();
     all(items.iter().enumerate().map(|(k, item)| {

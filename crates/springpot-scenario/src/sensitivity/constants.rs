@@ -7,8 +7,20 @@ use crate::units::{self, Unit};
 use springpot::signal::{Expression, Signal, Slope as SignalSlope, SlopeError};
 
 /// Sections that say nothing to the equations at a time t.
-const SILENT: [&str; 10] =
-    ["title", "constants", "time", "solver", "sweep", "figure", "output", "metric", "parameter", "sensitivity"];
+const SILENT: [&str; 12] = [
+    "title",
+    "constants",
+    "time",
+    "solver",
+    "sweep",
+    "figure",
+    "output",
+    "metric",
+    "parameter",
+    "sensitivity",
+    "data",
+    "fit",
+];
 
 /// Keys whose texts are no expressions.
 const TEXTS: [&str; 19] = [
@@ -34,13 +46,13 @@ const TEXTS: [&str; 19] = [
 ];
 
 /// Name, value and slope of every constant.
-pub(super) type Constants = Vec<(String, f64, f64)>;
+pub(crate) type Constants = Vec<(String, f64, f64)>;
 
 /// By how much each constant changes with the one called `name`, where they have these values.
 ///
 /// # Errors
 /// An expression that has no derivative.
-pub(super) fn slopes(document: &Node, name: &str, values: &[(String, f64)]) -> Result<Constants, String> {
+pub(crate) fn slopes(document: &Node, name: &str, values: &[(String, f64)]) -> Result<Constants, String> {
     let mut constants = Constants::new();
     let entries = document.get("constants").and_then(|constants| constants.entries()).unwrap_or_default();
     for (entry, (_, value)) in entries.iter().zip(values) {
@@ -70,7 +82,7 @@ fn scale(unit: Option<&std::sync::Arc<Node>>) -> f64 {
 }
 
 /// Everything that changes with `constants`: where it stands, and by how much, or why nobody knows.
-pub(super) fn followers(document: &Node, constants: &Constants) -> Vec<(Vec<Step>, Result<Slope, String>)> {
+pub(crate) fn followers(document: &Node, constants: &Constants) -> Vec<(Vec<Step>, Result<Slope, String>)> {
     let mut found = Vec::new();
     for entry in document.entries().unwrap_or_default() {
         if !SILENT.contains(&entry.key.as_str()) {

@@ -24,7 +24,7 @@ pub(super) type Moved = Result<(), String>;
 
 /// By how much a number changes with a parameter.
 #[derive(Debug, Clone)]
-pub(super) enum Slope {
+pub(crate) enum Slope {
     Number(f64),
     /// As a function of time, which jumps at times that move.
     Signal {
@@ -39,7 +39,7 @@ pub(super) enum Slope {
 const OF_STATE: &str = "no derivative is known of what follows from the state";
 
 impl Slope {
-    pub(super) fn number(self) -> Result<f64, String> {
+    pub(crate) fn number(self) -> Result<f64, String> {
         match self {
             Self::Number(by) => Ok(by),
             Self::Signal { .. } => Err("it is a function of time".to_owned()),

@@ -16,6 +16,7 @@ use crate::text::document::{Node, shorten};
 use crate::text::glob::matches;
 use crate::text::names;
 use crate::text::refusal::{Place, RefusalKind};
+use springpot::identification::{Prior, Scale};
 use springpot::observe::Quantity;
 use springpot::sensitivity::{DerivativeColumn, Parameter, Sensitivity, has_derivative};
 use springpot::table::Column;
@@ -131,31 +132,49 @@ fn written(document: &Node, steps: &[Step]) -> String {
 
 /// Value, unit and size of a parameter, and what its block says besides.
 fn parameter(root: &Table<'_>, scene: &Scene<'_>, by: &By, value: f64, unit: &str) -> Read<ParameterPlan> {
-    let own_size = if value == 0.0 { 1.0 } else { value.abs() };
-    let block = by.block.and_then(|k| Some(root.get("parameter")?.item(root.node.get("parameter")?.items()?.get(k)?)));
-    let typical = match &block {
-        None => own_size,
-        Some(item) => {
-            let table = Table::of(root.ctx, item.node, format!("parameter {:?}", shorten(&by.name)), &PARAMETER)?;
-            block_of(&table, &|name| rows::exponent(scene, &by.targets[0].steps, name), value, unit)?
-                .unwrap_or(own_size)
-        }
-    };
-    let paths = by.targets.iter().map(|target| target.written.clone()).collect();
-    Ok(ParameterPlan { name: by.name.clone(), paths, value, unit: unit.to_owned(), typical, place: by.place.clone() })
+    let exponents = |name: &str| rows::exponent(scene, &by.targets[0].steps, name);
+    block_of(root, by, &exponents, (value, unit))
 }
 
-/// Judges a `[[parameter]]` whose number has a unit; its typical size, where it says one.
-fn block_of(table: &Table<'_>, exponents: &dyn Fn(&str) -> Option<f64>, value: f64, unit: &str) -> Read<Option<f64>> {
-    let number = |field: &Field<'_>| field.number_with(unit, exponents);
+/// The parameter whose number has this value and unit, with what its `[[parameter]]` says, if it has one.
+pub(crate) fn block_of(
+    root: &Table<'_>,
+    by: &By,
+    exponents: &dyn Fn(&str) -> Option<f64>,
+    (value, unit): (f64, &str),
+) -> Read<ParameterPlan> {
+    let mut plan = ParameterPlan {
+        name: by.name.clone(),
+        paths: by.targets.iter().map(|target| target.written.clone()).collect(),
+        value,
+        unit: unit.to_owned(),
+        typical: if value == 0.0 { 1.0 } else { value.abs() },
+        bounds: None,
+        scale: None,
+        starts: Vec::new(),
+        prior: None,
+        place: by.place.clone(),
+    };
+    let block = by.block.and_then(|k| Some(root.get("parameter")?.item(root.node.get("parameter")?.items()?.get(k)?)));
+    if let Some(item) = block {
+        let table = Table::of(root.ctx, item.node, format!("parameter {:?}", shorten(&by.name)), &PARAMETER)?;
+        judged(&table, exponents, &mut plan)?;
+    }
+    Ok(plan)
+}
+
+/// Judges a `[[parameter]]` and takes what it says.
+fn judged(table: &Table<'_>, exponents: &dyn Fn(&str) -> Option<f64>, plan: &mut ParameterPlan) -> Read<()> {
+    let (value, unit) = (plan.value, plan.unit.clone());
+    let number = |field: &Field<'_>| field.number_with(&unit, exponents);
     let numbers = |field: &Field<'_>| match field.node.items() {
         Some(items) => all(items.iter().map(|item| number(&field.item(item))).collect::<Vec<_>>()),
         None => number(field).map(|one| vec![one]),
     };
-    let bounds = match table.get("bounds") {
+    plan.bounds = match table.get("bounds") {
         None => None,
         Some(field) => match numbers(&field)?[..] {
-            [low, high] if low < high => Some((low, high)),
+            [low, high] if low < high => Some([low, high]),
             [low, high] => {
                 let message = format!("goes from {low} to {high}");
                 let help = "write the smaller bound first".to_owned();
@@ -165,7 +184,7 @@ fn block_of(table: &Table<'_>, exponents: &dyn Fn(&str) -> Option<f64>, value: f
         },
     };
     let starts = table.get("start").map(|field| numbers(&field)).transpose()?;
-    if let Some((low, high)) = bounds {
+    if let Some([low, high]) = plan.bounds {
         let starts = starts.as_deref().unwrap_or(std::slice::from_ref(&value));
         if let Some(outside) = starts.iter().find(|start| !(low..=high).contains(*start)) {
             let field = table.get("start").map_or_else(|| table.require("bounds"), Ok)?;
@@ -174,9 +193,10 @@ fn block_of(table: &Table<'_>, exponents: &dyn Fn(&str) -> Option<f64>, value: f
             return Err(field.refuse(RefusalKind::Rule, message, Some(help)));
         }
     }
+    plan.starts = starts.unwrap_or_default();
     if let Some(field) = table.get("scale") {
         let scale = field.word("scale")?;
-        let low = bounds.map_or(value, |(low, _)| low);
+        let low = plan.bounds.map_or(value, |[low, _]| low);
         if scale == "log" && low < 0.0 {
             let message = format!("is \"log\", but values may be {low}");
             return Err(field.refuse(
@@ -185,23 +205,27 @@ fn block_of(table: &Table<'_>, exponents: &dyn Fn(&str) -> Option<f64>, value: f
                 Some("write bounds from 0 on, or \"linear\"".to_owned()),
             ));
         }
+        plan.scale = [("log", Scale::Log), ("logit", Scale::Logit), ("linear", Scale::Linear)]
+            .into_iter()
+            .find_map(|(word, own)| (word == scale).then_some(own));
     }
     if let Some(field) = table.get("prior") {
         let prior = field.table(&PRIOR)?;
         let (mean, sd) = (prior.require("mean").and_then(|field| number(&field)), prior.require("sd")?);
         let positive = number(&sd)?;
-        mean?;
+        let mean = mean?;
         if positive <= 0.0 {
             let message = format!("is {positive}, but must be positive");
             return Err(sd.refuse(RefusalKind::OutOfRange, message, None));
         }
+        plan.prior = Some(Prior { mean, sd: positive });
     }
-    let Some(field) = table.get("typical") else { return Ok(None) };
-    let typical = number(&field)?;
-    if typical > 0.0 {
-        return Ok(Some(typical));
+    let Some(field) = table.get("typical") else { return Ok(()) };
+    plan.typical = number(&field)?;
+    if plan.typical > 0.0 {
+        return Ok(());
     }
-    let message = format!("is {typical}, but must be positive");
+    let message = format!("is {}, but must be positive", plan.typical);
     Err(field.refuse(RefusalKind::OutOfRange, message, Some("write about how large the parameter is".to_owned())))
 }
 

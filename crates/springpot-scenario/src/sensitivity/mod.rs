@@ -10,6 +10,9 @@ mod mark;
 pub(crate) mod plan;
 mod rows;
 
-pub(crate) use asked::{Asked, More, OPTION, read};
-pub(crate) use judge::{judge, refuse_unknown};
+pub(crate) use asked::{Asked, By, More, OPTION, apart, blocks, read};
+pub(crate) use constants::{followers, slopes};
+pub(crate) use gather::Slope;
+pub(crate) use judge::{block_of, judge, refuse_unknown};
 pub(crate) use mark::mark;
+pub(crate) use plan::ParameterPlan;

@@ -2,6 +2,7 @@
 
 use super::judge::over;
 use crate::text::refusal::Place;
+use springpot::identification::{Prior, Scale};
 use springpot::sensitivity::Sensitivity;
 use springpot::table::Column;
 use std::sync::Arc;
@@ -36,6 +37,14 @@ pub struct ParameterPlan {
     pub unit: String,
     /// What a change of it is measured by, SI.
     pub typical: f64,
+    /// Its least and largest value, SI, where its block says them.
+    pub bounds: Option<[f64; 2]>,
+    /// The variable in which it moves, where its block says it.
+    pub scale: Option<Scale>,
+    /// Where a search begins, SI, where its block says it.
+    pub starts: Vec<f64>,
+    /// What is known of it beforehand, SI.
+    pub prior: Option<Prior>,
     /// Where it stands: its block, or what asks for it.
     pub place: Place,
 }

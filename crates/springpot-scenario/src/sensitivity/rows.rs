@@ -91,6 +91,7 @@ static ROWS: &[Row] = &[
     row(&[Key("element"), Item, Key("parameters"), Any, Item], Nothing, law),
     row(&[Key("element"), Item, Key("bushing"), Any, Key("parameters"), Any], OfLaw, law),
     row(&[Key("element"), Item, Key("bushing"), Any, Key("parameters"), Any, Item], Nothing, law),
+    row(&[Key("element"), Item, Key("shift"), Any], Nothing, shift),
     row(&[Key("element"), Item, Key("rest_length")], Nothing, rest),
     row(&[Key("element"), Item, Key("rest")], Zero, rest),
     row(&[Key("element"), Item, Key("bushing"), Any, Key("rest")], Zero, rest),
@@ -366,6 +367,11 @@ pub(super) fn exponent(scene: &Scene<'_>, steps: &[Step], name: &str) -> Option<
     let plan = &scene.plan.elements[*elements(scene, steps).first()?];
     let k = plan.element.entry.params.iter().position(|param| param.name == name)?;
     plan.parameters.get(k).copied()
+}
+
+/// Of moduli alone a derivative is known: [`crate::fit`].
+fn shift(_: &mut Gather, _: &Scene<'_>, _: &[Step], _: Slope) -> Moved {
+    Err("no derivative by it is known".to_owned())
 }
 
 fn rest(gather: &mut Gather, scene: &Scene<'_>, steps: &[Step], slope: Slope) -> Moved {

@@ -80,6 +80,14 @@ impl Problem for Drawn<'_> {
         self.problem.series()
     }
 
+    fn eliminated(&self) -> usize {
+        self.problem.eliminated()
+    }
+
+    fn noise(&self) -> f64 {
+        self.problem.noise()
+    }
+
     fn rows(&self, values: &[f64], wanted: &[bool], take: &mut dyn FnMut(Rows<'_>)) -> Result<(), Failed> {
         let mut done = vec![0; self.shift.len()];
         let mut shifted = Vec::new();

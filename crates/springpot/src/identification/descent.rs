@@ -47,6 +47,8 @@ pub(super) fn descend(look: &Look<'_>, places: &[Place], most: usize) -> Descent
     let mut largest = vec![0.0_f64; n];
     let (mut damping, mut growth) = (1e-3, 2.0);
     let mut last_step = f64::INFINITY;
+    // What is promised below the noise is not seen, however short the steps that fail.
+    let noise = ROUNDING.max(look.problem.noise());
     let done = |places, cost, end| Descent { places, cost, end };
     if !cost.is_finite() {
         return done(places, cost, End::Unstartable);
@@ -77,8 +79,8 @@ pub(super) fn descend(look: &Look<'_>, places: &[Place], most: usize) -> Descent
                 let (places, cost) = if tried_cost < cost { (tried, tried_cost) } else { (places, cost) };
                 return done(places, cost, End::Converged);
             }
-            if promised <= ROUNDING * cost && damping <= 1.0 {
-                if length >= last_step || tried_cost > cost * (1.0 + 2.0 * ROUNDING) {
+            if promised <= noise * cost && (damping <= 1.0 || noise > ROUNDING) {
+                if length >= last_step || noise > ROUNDING || tried_cost > cost * (1.0 + 2.0 * ROUNDING) {
                     return done(places, cost, End::Converged);
                 }
                 (places, cost, last_step) = (tried, tried_cost.min(cost), length);

@@ -80,6 +80,11 @@ impl Reached {
     pub fn cost(&self) -> f64 {
         self.0.cost
     }
+
+    /// The values there.
+    pub fn values(&self, parameters: &[Parameter]) -> Vec<f64> {
+        parameters.iter().zip(&self.0.places).map(|(parameter, place)| place.value(parameter)).collect()
+    }
 }
 
 /// A fit.
@@ -99,6 +104,8 @@ pub struct Fit {
     pub rows: usize,
     /// Parameters that are estimated: neither at a bound nor unseen.
     pub parameters: usize,
+    /// Linear unknowns that the problem has taken out.
+    pub eliminated: usize,
     /// Covariance of all parameters, row by row; 0 beside what is not estimated, infinite or NaN beside what rows leave open.
     pub covariance: Vec<f64>,
     /// By what correlated residuals have widened standard deviations; 1 where they are not correlated.
@@ -133,7 +140,7 @@ impl Fit {
 
     /// n − p.
     pub fn freedom(&self) -> f64 {
-        self.rows as f64 - self.parameters as f64
+        self.rows as f64 - (self.parameters + self.eliminated) as f64
     }
 
     /// Value ± t·sd in the variable of the parameter's scale, brought back; only the value of one that is not estimated.
@@ -212,8 +219,9 @@ pub fn best(
             .ok_or_else(|| FitError::Unstartable("the minimum cannot be evaluated again".into()))
     };
     let count = residuals(&at, &scales)?.count();
-    if count < at.places.len() {
-        return Err(FitError::TooFewRows { rows: count, parameters: at.places.len() });
+    let sought = at.places.len() + problem.eliminated();
+    if count < sought {
+        return Err(FitError::TooFewRows { rows: count, parameters: sought });
     }
     let agreeing = reached.iter().filter(|one| one.0.cost <= at.cost * (1.0 + SAME)).count();
     at = settle(&Look { problem, scales: &scales, rows: count, stop }, at, settings.steps);
@@ -232,6 +240,27 @@ pub fn best(
     let look = Look { problem, scales: &scales, rows: count, stop };
     summary(&look, at, [reached.len(), agreeing])
         .ok_or_else(|| FitError::Unstartable("the minimum has no derivatives".into()))
+}
+
+/// What rows say of the parameters at the first start, as if the least cost were there.
+///
+/// # Errors
+/// [`FitError`].
+pub fn at_start(problem: &dyn Problem, settings: &Settings, stop: &AtomicBool) -> Result<Fit, FitError> {
+    rows(problem)?;
+    let start = starts::starts(problem.parameters(), 1, settings.seed).swap_remove(0);
+    let place = |(parameter, value): (&Parameter, &f64)| Place::At(parameter.variable(*value));
+    let places: Vec<Place> = problem.parameters().iter().zip(&start).map(place).collect();
+    let scales = vec![f64::INFINITY; problem.series().len()];
+    let unstartable = || {
+        let told = problem.rows(&start, &vec![false; start.len()], &mut |_| {}).err();
+        FitError::Unstartable(told.map_or("a derivative is not a finite number".into(), |error| error.0))
+    };
+    let look = Look { problem, scales: &scales, rows: 0, stop };
+    let count = Residuals::new(&look, &start).ok_or_else(unstartable)?.count();
+    let look = Look { rows: count, ..look };
+    let at = Descent { cost: look.cost(&start), places, end: End::Converged };
+    summary(&look, at, [1, 1]).ok_or_else(unstartable)
 }
 
 /// What a minimum says.
@@ -281,10 +310,11 @@ fn summary(look: &Look<'_>, at: Descent, starts: [usize; 2]) -> Option<Fit> {
         undetermined: undetermined(&triangle, &columns, &values, widening * widening * noise),
         sigma: residuals.0.iter().map(sigma).collect(),
         lag1: residuals.lag1(),
-        criteria: Criteria::new(at.cost, look.rows, m),
+        criteria: Criteria::new(at.cost, look.rows, m + look.problem.eliminated()),
         cost: at.cost,
         rows: look.rows,
         parameters: m,
+        eliminated: look.problem.eliminated(),
         covariance: whole,
         widening,
         values,

@@ -14,6 +14,16 @@ pub(super) enum Place {
     Held(f64),
 }
 
+impl Place {
+    pub(super) fn value(self, parameter: &Parameter) -> f64 {
+        match self {
+            Self::At(u) => parameter.value(u),
+            Self::Bound(side) => parameter.bound(side),
+            Self::Held(value) => value,
+        }
+    }
+}
+
 /// The problem, its losses with their scales, and who may interrupt.
 #[derive(Clone, Copy)]
 pub(super) struct Look<'a> {
@@ -36,12 +46,7 @@ impl<'a> Look<'a> {
 
     /// The values at these places.
     pub(super) fn values(&self, places: &[Place]) -> Vec<f64> {
-        let value = |(parameter, place): (&Parameter, &Place)| match *place {
-            Place::At(u) => parameter.value(u),
-            Place::Bound(side) => parameter.bound(side),
-            Place::Held(value) => value,
-        };
-        self.parameters().iter().zip(places).map(value).collect()
+        self.parameters().iter().zip(places).map(|(parameter, place)| place.value(parameter)).collect()
     }
 
     /// The sum of squares, with losses and priors; infinite where there is none.
@@ -116,7 +121,7 @@ impl<'a> Look<'a> {
 
     /// Rows less parameters.
     pub(super) fn freedom(&self, parameters: usize) -> f64 {
-        self.rows as f64 - parameters as f64
+        self.rows as f64 - (parameters + self.problem.eliminated()) as f64
     }
 
     pub(super) fn loss(&self, series: usize) -> Bending {

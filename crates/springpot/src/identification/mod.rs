@@ -61,9 +61,9 @@ mod undetermined;
 
 pub use bootstrap::{Bootstrap, percentiles, replicate};
 pub use estimate::Criteria;
-pub use fit::{Fit, FitError, Reached, Settings, Status, best, fit, reach};
+pub use fit::{Fit, FitError, Reached, Settings, Status, at_start, best, fit, reach};
 pub use parameter::{Parameter, Prior, Scale, Side};
 pub use problem::{Failed, Loss, Problem, Rows, Series};
-pub use profile::profile;
+pub use profile::{profile, rise};
 pub use student::student_quantile;
 pub use undetermined::{Determined, Undetermined};

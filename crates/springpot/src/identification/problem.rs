@@ -54,6 +54,17 @@ pub trait Problem: Sync {
     /// The columns of residuals.
     fn series(&self) -> &[Series];
 
+    /// How many linear unknowns were taken out of the residuals before they are handed over, such as what was before a record: they count as
+    /// estimated.
+    fn eliminated(&self) -> usize {
+        0
+    }
+
+    /// Changes of the cost below this share of it are noise, such as that of the steps of a run.
+    fn noise(&self) -> f64 {
+        0.0
+    }
+
     /// Hands over all rows at these values, those of each series in their order, in blocks of any size; the same rows at all values.
     /// `wanted` says of each parameter whether the derivatives by it are asked for.
     ///

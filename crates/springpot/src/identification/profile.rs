@@ -43,6 +43,17 @@ pub fn profile(problem: &dyn Problem, fit: &Fit, j: usize, confidence: f64, stop
     (!look.is_stopped()).then_some(interval)
 }
 
+/// √ of what the least cost of the others has risen by, in variances widened as the standard deviations are, with parameter `j` held at a value:
+/// |value − minimum|/sd where the cost is a parabola. `None` for a parameter that is not estimated, or where it was interrupted.
+pub fn rise(problem: &dyn Problem, fit: &Fit, j: usize, value: f64, stop: &AtomicBool) -> Option<f64> {
+    if fit.unseen.contains(&j) || fit.freedom() <= 0.0 {
+        return None;
+    }
+    let look = Look { problem, scales: &fit.scales, rows: fit.rows, stop };
+    let rise = Profile { look, fit, j, steps: 200 }.rise(value);
+    (!look.is_stopped() && rise.is_finite()).then_some(rise)
+}
+
 impl Profile<'_> {
     fn parameter(&self) -> &Parameter {
         &self.look.parameters()[self.j]

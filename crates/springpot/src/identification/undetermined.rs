@@ -98,6 +98,21 @@ impl Undetermined {
     }
 }
 
+impl Undetermined {
+    /// What moves together, in words without values: `E_c and E_kv only by E_c + E_kv`.
+    pub fn direction(&self, name: impl Fn(usize) -> String) -> String {
+        match &self.determined {
+            Some(Determined { sum: [(first, _), (second, factor)], .. }) => {
+                let (first, second, size) = (name(*first), name(*second), factor.abs());
+                let written = if (size - 1.0).abs() < 1e-3 { String::new() } else { format!("{}·", digits(size, 4)) };
+                let sign = if *factor < 0.0 { "−" } else { "+" };
+                format!("{first} and {second} only by {first} {sign} {written}{second}")
+            }
+            None => self.text(name),
+        }
+    }
+}
+
 /// A number of so many significant digits.
 fn digits(value: f64, count: usize) -> String {
     if value == 0.0 || !value.is_finite() {

@@ -178,6 +178,7 @@ fn takes(key: &Key, sections: &[Section]) -> String {
         Shape::TextsByNameOrFalse => "texts by name, or `false`".to_owned(),
         Shape::TextOrFalse => "text, or `false`".to_owned(),
         Shape::WordList(_) => format!("array of {}", words(key.choices())),
+        Shape::ColumnsByName(keys) => format!("columns by name: text or {}", link("table", keys)),
         Shape::ByName => "values by name".to_owned(),
         Shape::Scalars => "numbers by name, in any units".to_owned(),
         Shape::UnitOrByName => "unit, or units by column".to_owned(),

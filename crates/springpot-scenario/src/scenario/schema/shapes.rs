@@ -174,6 +174,10 @@ fn property(key: &Key, catalog: &Catalog) -> Value {
             "anyOf": [{ "type": "object", "additionalProperties": text() }, { "const": false }], "description": words,
         }),
         Shape::TextsByName => json!({ "type": "object", "additionalProperties": text(), "description": words }),
+        Shape::ColumnsByName(keys) => {
+            let one = json!({ "anyOf": [text(), object(keys.words, keys, catalog)] });
+            json!({ "type": "object", "additionalProperties": one, "description": words })
+        }
         Shape::ByName => json!({ "type": "object", "description": words }),
         Shape::Law => {
             let laws: Vec<&str> = catalog.entries().iter().map(|law| &*law.name).collect();

@@ -1,11 +1,13 @@
 //! The parameters of any linear law of springs, dashpots and springpots nearest to a measured complex stiffness.
 
 use super::fit::{FitError, Measured, check_rows, misfit};
+use crate::dual::Dual;
 use crate::fractional::Kind as Derivative;
 use crate::identification::{self, Failed, Parameter, Rows, Series, Settings};
 use crate::law::catalog::{Entry, Param};
 use crate::law::network::Network;
 use crate::law::step::Point;
+use num_complex::Complex64;
 use std::sync::atomic::AtomicBool;
 
 /// Places from which the least minimum is looked for.
@@ -14,8 +16,6 @@ const STARTS: usize = 48;
 const FEW: usize = 48;
 /// Singular values of the column-scaled derivatives below this share of the largest: rows leave a combination open.
 const OPEN: f64 = 1e-7;
-/// Step of the differences, as a share.
-const STEP: f64 = 1e-3;
 
 /// A law fitted to a measurement.
 #[derive(Debug, Clone)]
@@ -143,27 +143,18 @@ impl<'a> Deviations<'a> {
         Ok(self.rows.iter().flat_map(|row| network.complex_modulus(&at(), row.omega)).collect())
     }
 
-    /// ∂K/∂p: fourth-order differences, towards the inside at an end of the range. A law is built of plain numbers.
+    /// ∂K/∂p, of the law built of numbers that carry their derivatives by p.
     fn slope(&self, values: &[f64], p: usize) -> Result<Vec<f64>, Failed> {
-        let [low, high] = self.parameters[p].bounds;
-        let value = values[p];
-        let room = if high.is_finite() { (value - low).min(high - value) } else { value - low };
-        let (weights, h): (&[(f64, f64)], f64) = match room > 0.0 {
-            true => (&[(-2.0, 1.0), (-1.0, -8.0), (1.0, 8.0), (2.0, -1.0)], STEP * room),
-            false => {
-                let h = 0.1 * STEP * self.parameters[p].typical.min(1.0);
-                let forward = &[(0.0, -25.0), (1.0, 48.0), (2.0, -36.0), (3.0, 16.0), (4.0, -3.0)];
-                (forward, if value > low { -h } else { h })
-            }
+        let numbers = values.iter().enumerate().map(|(k, value)| Dual { value: *value, slope: f64::from(k == p) });
+        let numbers: Vec<Dual> = numbers.collect();
+        let network = (self.law.build)(&numbers, Derivative::Caputo).map_err(|error| Failed(error.to_string()))?;
+        let slope = |row: &Measured| {
+            let s = [Complex64::new(0.0, row.omega), Complex64::ZERO];
+            network.modulus_slope(&at(), s).map(|[_, slope]| [slope.re, slope.im])
         };
-        let mut slope = vec![0.0; 2 * self.rows.len()];
-        for (steps, weight) in weights {
-            let mut moved = values.to_vec();
-            moved[p] += steps * h;
-            let factor = weight / (12.0 * h);
-            slope.iter_mut().zip(self.stiffness(&moved)?).for_each(|(slope, k)| *slope += factor * k);
-        }
-        Ok(slope)
+        let unknown = || Failed(format!("the law {} does not know its derivatives", self.law.name));
+        let slopes: Vec<[f64; 2]> = self.rows.iter().map(slope).collect::<Option<_>>().ok_or_else(unknown)?;
+        Ok(slopes.into_flattened())
     }
 }
 

@@ -1,0 +1,104 @@
+//! What a record's model says at some values of the parameters.
+
+use super::moduli;
+use super::stroke::Stroke;
+use super::walk::{self, Ask};
+use springpot::identification::Failed;
+use springpot::observe::{ElementQuantity, Quantity};
+use springpot_scenario::{DataKind, DataPlan, Fitting};
+
+/// A record made ready to be compared.
+pub(super) struct Record<'a> {
+    pub(super) fitting: &'a Fitting,
+    pub(super) index: usize,
+    pub(super) data: &'a DataPlan,
+    /// The rows that count.
+    pub(super) rows: Vec<usize>,
+    /// What was measured at those rows, filtered where the record asks for it, by column.
+    pub(super) measured: Vec<Vec<f64>>,
+    pub(super) stroke: Option<Stroke>,
+}
+
+/// What the model says of the rows that count.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Predicted {
+    pub(super) is_differentiated: bool,
+    /// By column, without zeros and lateness.
+    pub(super) model: Vec<Vec<f64>>,
+    /// By column, row by row, by each parameter of the record; empty where none was asked for.
+    pub(super) slopes: Vec<Vec<f64>>,
+    /// By column d/dt, where it may be late.
+    pub(super) rates: Vec<Vec<f64>>,
+}
+
+impl<'a> Record<'a> {
+    /// Of `most` rows of a stroke at most.
+    pub(super) fn new(fitting: &'a Fitting, index: usize, most: usize) -> Result<Self, String> {
+        let data = &fitting.plan().data[index];
+        let is_stroke = data.kind == DataKind::Stroke;
+        let step = if is_stroke { data.at.len().div_ceil(most) } else { 1 };
+        let stroke = is_stroke.then(|| Stroke::new(fitting, index, step)).transpose()?;
+        let mut rows: Vec<usize> = data.counted().filter(|row| row % step == 0).collect();
+        if let Some(stroke) = &stroke {
+            rows.retain(|row| data.at[*row] - data.at[0] >= stroke.unused);
+        }
+        let own = |k: usize, values: &[f64]| -> Vec<f64> {
+            let filtered = stroke.as_ref().and_then(|stroke| stroke.force.as_deref()).filter(|_| k == 0);
+            let values = filtered.unwrap_or(values);
+            rows.iter().map(|row| values[*row]).collect()
+        };
+        let measured = data.columns.iter().enumerate().map(|(k, column)| own(k, &column.measured)).collect();
+        Ok(Self { fitting, index, data, rows, measured, stroke })
+    }
+
+    /// The standard deviation of the rows of a column; 1 where it is estimated.
+    pub(super) fn sd(&self, column: usize, row: usize) -> f64 {
+        match (&self.data.columns[column].sd, self.data.relative_sd) {
+            (Some(sd), _) => sd[self.rows[row]],
+            (None, Some(sd)) => sd,
+            (None, None) => 1.0,
+        }
+    }
+
+    /// What the model says of the first `rows` at these values of all parameters, with its derivatives where `is_differentiated`.
+    pub(super) fn predict(&self, values: &[f64], is_differentiated: bool, rows: usize) -> Result<Predicted, Failed> {
+        if self.data.kind.is_relative() {
+            return moduli::predict(self, values, is_differentiated);
+        }
+        let late = |k: usize| self.data.columns[k].delay.map(|at| values[at]);
+        let quantities: Vec<Quantity> = match self.data.kind {
+            DataKind::Stroke => vec![Quantity::Element(0, ElementQuantity::Force)],
+            _ => self.fitting.quantities(self.index).to_vec(),
+        };
+        let first = if self.stroke.is_some() { self.data.at[0] } else { 0.0 };
+        let mut asks = Vec::new();
+        for (column, quantity) in quantities.iter().enumerate() {
+            for (row, at) in self.rows.iter().enumerate().take(rows) {
+                let t = self.data.at[*at] - first - late(column).unwrap_or(0.0);
+                asks.push(Ask { t, column, row, quantity: *quantity, wants_rate: late(column).is_some() });
+            }
+        }
+        let count = self.data.parameters.len();
+        let mut predicted = Predicted {
+            is_differentiated,
+            model: vec![vec![f64::NAN; rows]; quantities.len()],
+            slopes: vec![vec![0.0; if is_differentiated { rows * count } else { 0 }]; quantities.len()],
+            rates: (0..quantities.len()).map(|k| vec![0.0; if late(k).is_some() { rows } else { 0 }]).collect(),
+        };
+        match &self.stroke {
+            Some(stroke) => {
+                let (system, settings, by) = stroke.system(self.fitting, self.index, values, is_differentiated)?;
+                walk::walk(system, settings, asks, &by, count, &mut predicted)?;
+            }
+            None => {
+                let plan = self.fitting.run_at(self.index, values, is_differentiated).map_err(Failed)?;
+                let by: Vec<usize> = if is_differentiated { (0..count).collect() } else { Vec::new() };
+                walk::walk(plan.system(), plan.settings, asks, &by, count, &mut predicted)?;
+            }
+        }
+        if predicted.model.iter().flatten().any(|x| !x.is_finite()) {
+            return Err(Failed("a column of the run is empty at a row".to_owned()));
+        }
+        Ok(predicted)
+    }
+}
