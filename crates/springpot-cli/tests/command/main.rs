@@ -12,6 +12,7 @@ mod export;
 mod failures;
 mod figures;
 mod first_week;
+mod fit;
 mod fmu;
 mod formats;
 mod friction;

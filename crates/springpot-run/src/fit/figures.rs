@@ -100,16 +100,22 @@ fn residuals(data: &DataPlan, score: &RecordScore) -> Plot {
     }
 }
 
+/// Of all parameters in one scale: how far from the fitted value, in standard deviations.
 fn profiles(outcome: &Outcome) -> Plot {
     let plan = outcome.fitting.plan();
     let panel = |(j, points): &(usize, Vec<[f64; 2]>)| {
-        let own = &plan.parameters[*j];
-        let (x, y) = points.iter().map(|[x, y]| (*x, y * y)).unzip();
+        let (value, sd) = (outcome.fit.values[*j], outcome.fit.sd(*j));
+        let unit = if sd > 0.0 && sd.is_finite() {
+            sd
+        } else {
+            points.iter().map(|[x, _]| (x - value).abs()).fold(0.0, f64::max)
+        };
+        let (x, y) = points.iter().map(|[x, y]| ((x - value) / unit, y * y)).unzip();
         let curve = Curve { label: "profile".into(), x, y, ..Curve::default() };
-        Panel { title: Some(with_unit(&own.sought.name, &own.unit)), curves: vec![curve], ..Panel::default() }
+        Panel { title: Some(plan.parameters[*j].sought.name.clone()), curves: vec![curve], ..Panel::default() }
     };
     Plot {
-        x: axis("value", Scale::Linear),
+        x: axis("value less the fitted one, standard deviations", Scale::Linear),
         y: axis("rise of the cost, variances", Scale::Linear),
         hides_legend: true,
         panels: outcome.profiles.iter().take(16).map(panel).collect(),

@@ -7,12 +7,15 @@ use springpot::law::heat::INPUT as TEMPERATURE;
 use springpot::law::{InputValue, Network, Point};
 use springpot_scenario::{DataKind, MaterialAt, Moved};
 
+/// Of a part of a modulus, as a share of it.
+const ROUNDING: f64 = 1e-14;
 /// Step of the differences of first harmonics, as a share.
 const STEP: f64 = 1e-4;
 
 /// What the law says of every row.
-pub(super) fn predict(record: &Record<'_>, values: &[f64], is_differentiated: bool) -> Result<Predicted, Failed> {
+pub(super) fn predict(record: &Record<'_>, values: &[f64], wanted: &[bool]) -> Result<Predicted, Failed> {
     let data = record.data;
+    let is_differentiated = record.is_wanted(wanted);
     let material = record.fitting.material_at(record.index, values).map_err(Failed)?;
     let columns = data.columns.len();
     let (rows, count) = (record.rows.len(), data.parameters.len());
@@ -55,7 +58,8 @@ pub(super) fn predict(record: &Record<'_>, values: &[f64], is_differentiated: bo
         if !is_differentiated || amplitude.is_some() {
             continue;
         }
-        for (p, moved) in material.moved.iter().enumerate() {
+        let sought = |(p, _): &(usize, &Moved)| wanted[data.parameters[*p]];
+        for (p, moved) in material.moved.iter().enumerate().filter(sought) {
             let slopes = match moved {
                 Moved::Nothing => continue,
                 Moved::Law(law) => own(law, 0.0),
@@ -70,7 +74,7 @@ pub(super) fn predict(record: &Record<'_>, values: &[f64], is_differentiated: bo
         }
     }
     if is_differentiated && amplitude.is_some() {
-        differences(record, values, &material, &mut predicted)?;
+        differences(record, (values, wanted), &material, &mut predicted)?;
     }
     Ok(predicted)
 }
@@ -90,6 +94,10 @@ fn answer(kind: DataKind, law: &Network, (at, x): (&Point, f64), clock: f64) -> 
 
 /// Storage and loss, or modulus and tan δ, with their derivatives.
 fn parts(kind: DataKind, own: Complex64, by: Complex64) -> [[f64; 2]; 2] {
+    // What is a rounding of the other is nothing: a dashpot stores nothing.
+    let size = ROUNDING * own.norm();
+    let own =
+        Complex64::new(if own.re.abs() < size { 0.0 } else { own.re }, if own.im.abs() < size { 0.0 } else { own.im });
     match kind {
         DataKind::Dma { is_polar: true } => {
             let modulus = own.norm();
@@ -108,10 +116,15 @@ fn harmonic(kind: DataKind, law: &Network, (at, omega): (&Point, f64), amplitude
 }
 
 /// Derivatives of first harmonics, of fourth order in the step: there is no formula of all of them.
-fn differences(record: &Record<'_>, values: &[f64], own: &MaterialAt, into: &mut Predicted) -> Result<(), Failed> {
+fn differences(
+    record: &Record<'_>,
+    (values, wanted): (&[f64], &[bool]),
+    own: &MaterialAt,
+    into: &mut Predicted,
+) -> Result<(), Failed> {
     let count = record.data.parameters.len();
     for (p, &k) in record.data.parameters.iter().enumerate() {
-        if matches!(own.moved[p], Moved::Nothing) {
+        if matches!(own.moved[p], Moved::Nothing) || !wanted[k] {
             continue;
         }
         let [low, high] = record.fitting.plan().parameters[k].sought.bounds;
@@ -120,7 +133,7 @@ fn differences(record: &Record<'_>, values: &[f64], own: &MaterialAt, into: &mut
         for (steps, weight) in [(-2.0, 1.0), (-1.0, -8.0), (1.0, 8.0), (2.0, -1.0)] {
             let mut moved = values.to_vec();
             moved[k] += steps * step;
-            let at = predict(record, &moved, false)?;
+            let at = predict(record, &moved, &vec![false; values.len()])?;
             for (column, model) in into.slopes.iter_mut().zip(&at.model) {
                 for (row, value) in model.iter().enumerate() {
                     column[row * count + p] += weight * value / (12.0 * step);

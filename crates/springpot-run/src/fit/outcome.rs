@@ -91,7 +91,7 @@ impl From<Ended> for Status {
 /// How well these values meet record `k`; nothing where its model has none.
 pub(super) fn score(problem: &Problem<'_>, k: usize, values: &[f64]) -> Option<RecordScore> {
     let record = &problem.records[k];
-    let predicted: Predicted = record.predict(values, false, record.rows.len()).ok()?;
+    let predicted: Predicted = record.predict(values, &vec![false; values.len()], record.rows.len()).ok()?;
     let mut cost = 0.0;
     let columns = (0..record.data.columns.len()).map(|column| {
         let (residuals, _) = problem.column(k, &predicted, values, column);

@@ -51,6 +51,12 @@ impl<'a> Record<'a> {
         Ok(Self { fitting, index, data, rows, measured, stroke })
     }
 
+    /// Whether a derivative is wanted by what it follows from.
+    pub(super) fn is_wanted(&self, wanted: &[bool]) -> bool {
+        let beside = self.data.columns.iter().flat_map(|column| [column.offset, column.delay]).flatten();
+        self.data.parameters.iter().copied().chain(beside).any(|at| wanted[at])
+    }
+
     /// The standard deviation of the rows of a column; 1 where it is estimated.
     pub(super) fn sd(&self, column: usize, row: usize) -> f64 {
         match (&self.data.columns[column].sd, self.data.relative_sd) {
@@ -60,10 +66,10 @@ impl<'a> Record<'a> {
         }
     }
 
-    /// What the model says of the first `rows` at these values of all parameters, with its derivatives where `is_differentiated`.
-    pub(super) fn predict(&self, values: &[f64], is_differentiated: bool, rows: usize) -> Result<Predicted, Failed> {
+    /// What the model says of the first `rows` at these values of all parameters, with its derivatives by those that are `wanted`.
+    pub(super) fn predict(&self, values: &[f64], wanted: &[bool], rows: usize) -> Result<Predicted, Failed> {
         if self.data.kind.is_relative() {
-            return moduli::predict(self, values, is_differentiated);
+            return moduli::predict(self, values, wanted);
         }
         let late = |k: usize| self.data.columns[k].delay.map(|at| values[at]);
         let quantities: Vec<Quantity> = match self.data.kind {
@@ -79,6 +85,8 @@ impl<'a> Record<'a> {
             }
         }
         let count = self.data.parameters.len();
+        let is_differentiated = self.is_wanted(wanted);
+        let sought: Vec<usize> = (0..count).filter(|p| wanted[self.data.parameters[*p]]).collect();
         let mut predicted = Predicted {
             is_differentiated,
             model: vec![vec![f64::NAN; rows]; quantities.len()],
@@ -87,13 +95,12 @@ impl<'a> Record<'a> {
         };
         match &self.stroke {
             Some(stroke) => {
-                let (system, settings, by) = stroke.system(self.fitting, self.index, values, is_differentiated)?;
+                let (system, settings, by) = stroke.system(self.fitting, self.index, values, wanted)?;
                 walk::walk(system, settings, asks, &by, count, &mut predicted)?;
             }
             None => {
-                let plan = self.fitting.run_at(self.index, values, is_differentiated).map_err(Failed)?;
-                let by: Vec<usize> = if is_differentiated { (0..count).collect() } else { Vec::new() };
-                walk::walk(plan.system(), plan.settings, asks, &by, count, &mut predicted)?;
+                let plan = self.fitting.run_at(self.index, values, wanted).map_err(Failed)?;
+                walk::walk(plan.system(), plan.settings, asks, &sought, count, &mut predicted)?;
             }
         }
         if predicted.model.iter().flatten().any(|x| !x.is_finite()) {

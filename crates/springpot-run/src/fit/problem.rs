@@ -54,6 +54,11 @@ impl<'a> Problem<'a> {
         self.records.iter().any(is_long)
     }
 
+    /// Whether residuals take steps in time.
+    pub(super) fn takes_steps(&self) -> bool {
+        self.records.iter().any(|record| record.data.is_fitted && !record.data.kind.is_relative())
+    }
+
     /// Whether a record takes a run.
     pub(super) fn has_runs(&self) -> bool {
         self.records.iter().any(|record| record.data.is_fitted && record.data.kind == DataKind::Run)
@@ -182,17 +187,14 @@ impl identification::Problem for Problem<'_> {
     }
 
     fn noise(&self) -> f64 {
-        let steps = self.records.iter().any(|record| record.data.is_fitted && !record.data.kind.is_relative());
-        if steps { NOISE } else { 0.0 }
+        if self.takes_steps() { NOISE } else { 0.0 }
     }
 
     fn rows(&self, values: &[f64], wanted: &[bool], take: &mut dyn FnMut(Rows<'_>)) -> Result<(), Failed> {
         for (k, record) in self.records.iter().enumerate() {
             let Some(first) = self.first[k] else { continue };
             let data = record.data;
-            let beside = data.columns.iter().flat_map(|column| [column.offset, column.delay]).flatten();
-            let is_wanted = data.parameters.iter().copied().chain(beside).any(|at| wanted[at]);
-            let predicted = record.predict(values, is_wanted, self.within(record))?;
+            let predicted = record.predict(values, wanted, self.within(record))?;
             for column in 0..data.columns.len() {
                 let (residuals, mut jacobian) = self.column(k, &predicted, values, column);
                 if jacobian.is_empty() && wanted.contains(&true) {

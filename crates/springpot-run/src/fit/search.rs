@@ -22,6 +22,10 @@ const POINTS: usize = 13;
 const BATCH: usize = 4;
 /// Costs that differ by less are one, as a share.
 const SAME: f64 = 1e-6;
+/// As of minima at a bound that a logarithm only drifts towards.
+const NEARLY: f64 = 1e-4;
+/// Rounds of starts about the least minimum.
+const ROUNDS: u64 = 4;
 /// Samples of a long stroke from which the search begins.
 const FEW: usize = 500;
 /// Lag-1 correlations that widen.
@@ -155,11 +159,50 @@ fn reached(
     Ok(all)
 }
 
+/// The least of the minima about a minimum too: where residuals cost nothing, as many starts about it, until none leads lower. Of the starts told those
+/// count that came to the least of all.
+fn about(
+    problem: &Problem<'_>,
+    (settings, reached): (&Settings, &[Reached]),
+    mut found: Fit,
+    jobs: usize,
+    stop: &AtomicBool,
+) -> Result<Fit, Refused> {
+    let fitting = problem.records[0].fitting;
+    for round in 1..=ROUNDS {
+        if stop.load(Ordering::Relaxed) {
+            break;
+        }
+        let Ok(mut near) = Problem::new(fitting) else { break };
+        for (parameter, value) in near.parameters.iter_mut().zip(&found.values) {
+            // From a bound there is nothing to spread: from where the parameter began.
+            let is_inside = parameter.bounds.iter().all(|bound| bound != value);
+            parameter.start = vec![if is_inside { *value } else { parameter.start[0] }];
+        }
+        let settings = Settings { seed: settings.seed.wrapping_add(round), starts: settings.starts + 1, ..*settings };
+        let others = spread(settings.starts - 1, jobs, stop, |k| reach(&near, &settings, k + 1, stop));
+        let others = others.into_iter().collect::<Result<Vec<_>, _>>()?;
+        let least = others.iter().map(Reached::cost).fold(f64::INFINITY, f64::min);
+        if least >= found.cost * (1.0 - SAME) {
+            break;
+        }
+        found = best(problem, &settings, &others, stop)?;
+    }
+    let least = reached.iter().filter(|one| one.cost() <= found.cost * (1.0 + NEARLY)).count();
+    found.starts = [reached.len(), least];
+    Ok(found)
+}
+
 /// The fit of all rows. Long strokes are first fitted by a part of their samples from all starts, and then from the best of these.
 fn found(problem: &Problem<'_>, settings: &Settings, jobs: usize, stop: &AtomicBool) -> Result<Fit, Refused> {
     if !problem.has_long_strokes(2 * FEW) || settings.starts == 1 {
         let reached = reached(problem, settings, jobs, stop)?;
-        return best(problem, settings, &reached, stop);
+        let found = best(problem, settings, &reached, stop)?;
+        return if settings.starts == 1 || problem.takes_steps() {
+            Ok(found)
+        } else {
+            about(problem, (settings, &reached), found, jobs, stop)
+        };
     }
     let fitting = problem.records[0].fitting;
     let Ok(coarse) = Problem::thinned(fitting, FEW) else { return best(problem, settings, &[], stop) };

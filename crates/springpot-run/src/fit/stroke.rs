@@ -100,7 +100,7 @@ impl Stroke {
         fitting: &Fitting,
         index: usize,
         values: &[f64],
-        is_differentiated: bool,
+        wanted: &[bool],
     ) -> Result<(System, Settings, Vec<usize>), Failed> {
         let data = &fitting.plan().data[index];
         let MaterialAt { law, entry, parameters, moved, .. } = fitting.material_at(index, values).map_err(Failed)?;
@@ -119,7 +119,7 @@ impl Stroke {
         }
         let mut by = Vec::new();
         let mut sought = Vec::new();
-        for (k, moved) in moved.into_iter().enumerate().filter(|_| is_differentiated) {
+        for (k, moved) in moved.into_iter().enumerate().filter(|(k, _)| wanted[data.parameters[*k]]) {
             let law = match moved {
                 Moved::Nothing => continue,
                 Moved::Law(law) => law,

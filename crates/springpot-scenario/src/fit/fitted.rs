@@ -1,7 +1,7 @@
 //! The scenario with other numbers, everything else as it is written.
 
 use super::Fitting;
-use super::plan::Role;
+use super::plan::{FitParameter, Role};
 use crate::changes::path::{self, Step};
 use crate::text::document::{Node, Value};
 use crate::text::quoted::{toml_key, toml_text};
@@ -32,17 +32,24 @@ impl Fitting {
         for (steps, text, written) in parameters {
             put(&scenario.document, steps, text, &mut edits).unwrap_or_else(|| lost.push(written.to_owned()));
         }
-        for (k, parameter) in self.plan.parameters.iter().enumerate() {
-            let Role::Number { record: Some(record) } = parameter.role else { continue };
-            let text = quantity(values[k], &parameter.unit);
-            let steps = [
-                Step::Key("data".to_owned()),
-                Step::Index(record),
-                Step::Key("set".to_owned()),
-                Step::Key(parameter.paths[0].clone()),
-            ];
-            put(&scenario.document, &steps, text, &mut edits)
-                .unwrap_or_else(|| lost.push(parameter.sought.name.clone()));
+        for record in 0..self.plan.data.len() {
+            let is_own = |parameter: &FitParameter| parameter.role == Role::Number { record: Some(record) };
+            let own = self.plan.parameters.iter().zip(values).filter(|(parameter, _)| is_own(parameter));
+            let own: Vec<(&str, String)> =
+                own.map(|(parameter, value)| (&*parameter.paths[0], quantity(*value, &parameter.unit))).collect();
+            let table = |key: &str| Step::Key(key.to_owned());
+            let steps = [table("data"), Step::Index(record), table("set")];
+            let data = scenario.document.get("data").and_then(|data| data.items()?.get(record).cloned());
+            if data.is_some_and(|data| data.get("set").is_none()) && !own.is_empty() {
+                let entries = own.iter().map(|(path, text)| format!("{} = {text}", toml_key(path)));
+                let text = format!("{{ {} }}", entries.collect::<Vec<_>>().join(", "));
+                put(&scenario.document, &steps, text, &mut edits).unwrap_or_else(|| lost.push("set".to_owned()));
+                continue;
+            }
+            for (path, text) in own {
+                let steps: Vec<Step> = steps.iter().cloned().chain([table(path)]).collect();
+                put(&scenario.document, &steps, text, &mut edits).unwrap_or_else(|| lost.push(path.to_owned()));
+            }
         }
         let mut text = scenario.source.text.to_string();
         // From the end, so that places before stay; of insertions at one place the first comes first.
@@ -120,12 +127,7 @@ fn insert(table: &Node, rest: &[Step], text: &str, edits: &mut Vec<Edit>) -> Opt
         edits.push((at..at, line));
         return Some(());
     }
-    let mut keys = keys?;
-    // A table of its own is better inline, where its keys hold dots.
-    let line = match keys.len() {
-        2 if keys[0] == "set" => format!("set = {{ {} = {text} }}", keys.pop()?),
-        _ => format!("{} = {text}", keys.join(".")),
-    };
+    let line = format!("{} = {text}", keys?.join("."));
     // Behind the last of its entries that stands in the lines below its header.
     let last = entries
         .iter()

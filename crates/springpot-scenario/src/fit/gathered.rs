@@ -51,13 +51,16 @@ impl Fitting {
             Ok((title, settings::read(&root)?))
         });
         let (title, settings) = ctx.finish(read)?;
-        if let Some(law) = law {
-            super::laws::replace(catalog, &mut document, settings.element.as_deref().unwrap_or_default(), law);
-        }
+        let element = settings.element.as_deref().unwrap_or_default();
         let ctx = context();
-        let read = root(&ctx, &document)
-            .and_then(|root| blocks(&root, law.map(|_| settings.element.as_deref().unwrap_or_default())));
-        let global = ctx.finish(read)?;
+        let read = root(&ctx, &document).and_then(|root| blocks(&root, law.map(|_| element)));
+        let mut global = ctx.finish(read)?;
+        if let Some(law) = law {
+            super::laws::replace(catalog, &mut document, element, law);
+            let ctx = context();
+            let read = root(&ctx, &document).and_then(|root| all_of(&root, element));
+            global.extend(ctx.finish(read)?);
+        }
         let ctx = context();
         let count = root(&ctx, &document).and_then(|root| Ok(data(&root)?.len()));
         let count = ctx.finish(count)?;
@@ -145,32 +148,36 @@ fn data<'a>(root: &Table<'a>) -> Read<Vec<Field<'a>>> {
     Ok(items)
 }
 
-/// The parameters of all records, those of the element whose law is replaced being all of its numbers.
+/// The parameters of all records, those of an element whose law is replaced not among them.
 fn blocks(root: &Table<'_>, replaced: Option<&str>) -> Read<Vec<By>> {
     let mut all = match root.get("parameter") {
         None => Vec::new(),
         Some(field) => sensitivity::blocks(root, &field)?,
     };
     if let Some(element) = replaced {
-        let place = root.get("fit").map_or_else(|| root.node.place.clone(), |field| field.node.place.clone());
-        let steps = material::steps(root.ctx, root.node, element, &place)?;
-        all.retain(|by| !by.targets.iter().any(|target| target.steps.starts_with(&steps)));
-        let mut at = root.node;
-        for step in &steps {
-            at = match step {
-                Step::Key(key) => at.get(key).map_or(at, |node| &**node),
-                Step::Index(k) => at.items().and_then(|items| items.get(*k)).map_or(at, |item| &**item),
-            };
-        }
-        let entries = at.get("parameters").and_then(|all| all.entries()).unwrap_or_default();
-        for entry in entries {
-            let written = format!("element.{element}.{}", entry.key);
-            let target = path::resolve(root.ctx, root.node, &written, &place)?;
-            all.push(By { name: entry.key.clone(), targets: vec![target], block: None, place: place.clone() });
-        }
+        let steps = material::steps(root.ctx, root.node, element, &place_of_fit(root))?;
+        let moves = |by: &By| by.targets.iter().any(|target| target.steps.starts_with(&steps));
+        all.retain(|by| !moves(by));
     }
     sensitivity::apart(root.ctx, &all)?;
     Ok(all)
+}
+
+/// Every number of the law of an element, under its own name.
+fn all_of(root: &Table<'_>, element: &str) -> Read<Vec<By>> {
+    let place = place_of_fit(root);
+    let steps = material::steps(root.ctx, root.node, element, &place)?;
+    let table = material::table(root.node, &steps).and_then(|own| own.get("parameters"));
+    let entries = table.and_then(|table| table.entries()).unwrap_or_default();
+    all(entries.iter().map(|entry| {
+        let written = format!("element.{element}.{}", entry.key);
+        let target = path::resolve(root.ctx, root.node, &written, &place)?;
+        Ok(By { name: entry.key.clone(), targets: vec![target], block: None, place: place.clone() })
+    }))
+}
+
+fn place_of_fit(root: &Table<'_>) -> crate::Place {
+    root.get("fit").map_or_else(|| root.node.place.clone(), |field| field.node.place.clone())
 }
 
 /// Record `k`, and the columns whose zero and lateness are sought.

@@ -111,7 +111,7 @@ impl MaterialAt {
 }
 
 /// The table that steps lead to.
-fn table<'n>(document: &'n Node, steps: &[Step]) -> Option<&'n Node> {
+pub(super) fn table<'n>(document: &'n Node, steps: &[Step]) -> Option<&'n Node> {
     steps.iter().try_fold(document, |node, step| match step {
         Step::Index(at) => node.items()?.get(*at).map(|item| &**item),
         Step::Key(key) => node.get(key).map(|node| &**node),
@@ -263,7 +263,7 @@ impl Material {
                     };
                     own[k] += match slope? {
                         Slope::Number(by) => by,
-                        Slope::Signal(_) => return Err(format!("constants.{name} moves a function of time")),
+                        Slope::Signal { .. } | Slope::Feedback(_) => return Err(format!("constants.{name} moves a function of time")),
                     };
                 }
                 Ok(Turned::Law(own))

@@ -20,7 +20,7 @@ use crate::reader::files::{CsvCache, UrdfCache};
 use crate::scenario::Scenario;
 use crate::scenario::cases::{read_plan, root};
 use crate::scenario::root::SCENARIO;
-use crate::sensitivity::{self, Asked};
+use crate::sensitivity::{self, Asked, By};
 use crate::text::document::{Node, Value};
 use crate::text::refusal::{Refusals, Remark};
 use springpot::law::{Catalog, Derivative};
@@ -96,14 +96,16 @@ impl Fitting {
         Context::new(&self.catalog, &self.folder, &self.tables, &self.robots).of_whole(&SCENARIO)
     }
 
-    /// The document of a record with these values of its parameters, SI.
-    fn document_at(&self, record: usize, values: &[f64]) -> Node {
+    /// The document of a record with these values of its parameters, SI, those that are wanted being tagged in their order.
+    fn document_at(&self, record: usize, values: &[f64], wanted: impl Fn(usize) -> bool) -> Node {
         let case = &self.records[record];
         let mut document = case.document.clone();
         let indices = &self.plan.data[record].parameters;
+        let mut tags = 0..;
         for (by, k) in case.asked.by.iter().zip(indices) {
             for target in &by.targets {
-                put(&mut document, &target.steps, values[*k]);
+                let tag = if wanted(*k) { tags.next() } else { None };
+                put(&mut document, &target.steps, (values[*k], tag));
             }
         }
         document
@@ -125,7 +127,7 @@ impl Fitting {
             let own: Vec<f64> = data.parameters.iter().map(|k| values[*k]).collect();
             return material.at(&own, derivative);
         }
-        let document = self.document_at(record, values);
+        let document = self.document_at(record, values, |_| false);
         let ctx = self.context();
         let read = root(&ctx, &document).and_then(|_| material.again(&ctx, &document, derivative));
         ctx.finish(read).map_err(|refusals| refusals.to_string())?
@@ -138,13 +140,16 @@ impl Fitting {
         material.inputs().into_iter().map(|(name, _)| name).zip(signals).collect()
     }
 
-    /// The run of a record at these values, differentiated by the record's parameters or by none.
+    /// The run of a record at these values, differentiated by those of the record's parameters that are `wanted`.
     ///
     /// # Errors
     /// Why there is none.
-    pub fn run_at(&self, record: usize, values: &[f64], is_differentiated: bool) -> Result<Plan, String> {
-        let document = self.document_at(record, values);
-        let asked = Asked { is_asked: is_differentiated, ..self.records[record].asked.clone() };
+    pub fn run_at(&self, record: usize, values: &[f64], wanted: &[bool]) -> Result<Plan, String> {
+        let document = self.document_at(record, values, |k| wanted[k]);
+        let case = &self.records[record];
+        let sought = case.asked.by.iter().zip(&self.plan.data[record].parameters).filter(|(_, k)| wanted[**k]);
+        let by: Vec<By> = sought.map(|(by, _)| by.clone()).collect();
+        let asked = Asked { is_asked: !by.is_empty(), by, of: case.asked.of.clone(), control: false };
         self.planned(&document, &asked).map_err(|refusals| refusals.to_string())
     }
 
@@ -168,7 +173,7 @@ impl Fitting {
 }
 
 /// Puts a number where there is one; an array may be led into by names of its places.
-fn put(document: &mut Node, steps: &[Step], value: f64) {
+fn put(document: &mut Node, steps: &[Step], (value, tag): (f64, Option<usize>)) {
     let mut node = document;
     for step in steps {
         node = match (step, &mut node.value) {
@@ -188,4 +193,5 @@ fn put(document: &mut Node, steps: &[Step], value: f64) {
         };
     }
     node.value = Value::Number { value, integer: None };
+    node.tag = tag;
 }
