@@ -263,7 +263,9 @@ impl Material {
                     };
                     own[k] += match slope? {
                         Slope::Number(by) => by,
-                        Slope::Signal { .. } | Slope::Feedback(_) => return Err(format!("constants.{name} moves a function of time")),
+                        Slope::Signal { .. } | Slope::Feedback(_) => {
+                            return Err(format!("constants.{name} moves a function of time"));
+                        }
                     };
                 }
                 Ok(Turned::Law(own))

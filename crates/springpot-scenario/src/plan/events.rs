@@ -32,6 +32,13 @@ pub struct EventPlan {
     pub(crate) record: Value,
 }
 
+impl EventPlan {
+    /// The columns that functions of events may name.
+    pub(crate) fn columns(plan: &Plan) -> Vec<String> {
+        Seen::of(plan).names
+    }
+}
+
 /// What may be set.
 struct Settable {
     /// The column that tells it.

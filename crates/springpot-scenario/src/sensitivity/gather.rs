@@ -161,6 +161,9 @@ pub(super) struct Gather {
     inputs: Vec<(usize, usize, Signal)>,
     drives: Vec<(usize, Signal)>,
     switches: Vec<(Switched, MovedJump)>,
+    /// Functions of events.
+    pub(super) when: Vec<(usize, FeedbackSlope)>,
+    when_of_time: Vec<(usize, Signal)>,
     /// Numbers of an event and of one of its settings.
     pub(super) set: Vec<(usize, usize, f64)>,
     /// Of feedback, by velocity, or by element and input.
@@ -207,6 +210,12 @@ impl Gather {
         let (by, jumps) = slope.switching()?;
         self.drives.push((velocity, by));
         self.switch(Switched::Drive(velocity), jumps);
+        Ok(())
+    }
+
+    /// Moves the function of an event that hangs on t alone.
+    pub(super) fn when_of_time(&mut self, event: usize, slope: Slope) -> Moved {
+        self.when_of_time.push((event, slope.signal()?));
         Ok(())
     }
 
@@ -283,6 +292,8 @@ impl Gather {
             let [argument, by] = [jump.argument, jump.slope].map(Signal::expression);
             Seed::Switch { of, argument, by }
         }));
+        seeds.extend(self.when.into_iter().map(|(event, by)| Seed::When { event, by }));
+        seeds.extend(self.when_of_time.into_iter().map(|(event, by)| Seed::WhenOfTime { event, by }));
         seeds.extend(self.set.iter().map(|&(event, setting, by)| Seed::Set { event, setting, by }));
         seeds.extend(self.torques.into_iter().map(|(velocity, by)| Seed::TorqueFeedback { velocity, by }));
         let fed_back = self.fed_back.into_iter();

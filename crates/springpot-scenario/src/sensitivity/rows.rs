@@ -3,7 +3,9 @@
 use super::control::{duration, gain, limit, reference, to};
 use super::gather::{Gather, Moved, Scene, Slope};
 use crate::changes::path::Step;
+use crate::plan::events::EventPlan;
 use springpot::actuation::Drive;
+use springpot::control::FeedbackSlope;
 use springpot::elements::Component;
 use springpot::model::JointKind;
 use springpot::observe::{ElementQuantity, Quantity};
@@ -108,6 +110,7 @@ static ROWS: &[Row] = &[
     row(&[Key("motion"), Key("start"), Key("v"), Any, Any], Zero, start_v),
     signal(row(&[Key("motion"), Key("torque"), Any], Zero, torque)),
     signal(row(&[Key("motion"), Key("torque"), Any, Any], Zero, torque)),
+    signal(row(&[Key("event"), Item, Key("when")], Nothing, event_function)),
     row(&[Key("event"), Item, Key("action"), Key("set"), Any], Nothing, event_value),
     row(&[Key("motion"), Key("controller"), Key("kp")], Nothing, gain),
     row(&[Key("motion"), Key("controller"), Key("kp"), Any], Zero, gain),
@@ -466,6 +469,18 @@ fn torque(gather: &mut Gather, scene: &Scene<'_>, steps: &[Step], slope: Slope) 
         }
         slope => gather.drive(velocity, slope)?,
     }
+    Ok(())
+}
+
+/// The function of an event.
+fn event_function(gather: &mut Gather, scene: &Scene<'_>, steps: &[Step], slope: Slope) -> Moved {
+    let event = item(&steps[1]);
+    let Slope::Feedback(constants) = slope else { return gather.when_of_time(event, slope) };
+    let plan = scene.plan.events.get(event).ok_or("there is no such event")?;
+    let columns = EventPlan::columns(scene.plan);
+    let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
+    let by = FeedbackSlope::new(&plan.event.when.to_string(), &constants, &columns, 1.0);
+    gather.when.push((event, by.map_err(|error| error.to_string())?));
     Ok(())
 }
 

@@ -63,6 +63,8 @@ const PENDULUM: &str = r#"
 t_s = 0.13
 height = 2.0
 width = 0.04
+share = 0.1
+last = 0.35
 [robot]
 gravity = [0, 0, -9.81]
 limits = { stiffness = 40, damping = 0.6 }
@@ -112,9 +114,13 @@ direction = "rising"
 action = { set = { "tau.q1" = 1.5, "damper.u" = 0.4 } }
 [[event]]
 name = "turns"
-when = "v.q2 + 0.1*strut.force"
+when = "v.q2 + share*strut.force"
 direction = "falling"
 action = { set = { "tau.q2" = -0.7 } }
+[[event]]
+name = "late"
+when = "t - last"
+action = { set = { "damper.u" = 2 } }
 [motion]
 "#;
 
@@ -152,6 +158,8 @@ fn events_set_torques_and_inputs() {
         ("event.low.action.set.\"tau.q1\"", 5e-3),
         ("event.low.action.set.\"damper.u\"", 2e-3),
         ("constants.t_s", 1e-4),
+        ("constants.share", 5e-4),
+        ("constants.last", 1e-3),
     ];
     // Of the times of events the runs that are compared know no more.
     compare_within(3e-7, &text, &COLUMNS, &paths);

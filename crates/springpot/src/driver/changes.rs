@@ -66,7 +66,7 @@ impl Driver {
     /// What a row there may show.
     pub(super) fn vary_event(&mut self, cx: Context, number: usize, t: f64) -> Result<(), RunError> {
         let event = &cx.system.watched_events()[number];
-        let Some(later) = self.passage(cx, event, t)? else { return Ok(()) };
+        let Some(later) = self.passage(cx, number, t)? else { return Ok(()) };
         if let Some(variation) = &mut self.recorder.variation {
             variation.set(number, event, t, later);
         }
@@ -86,7 +86,7 @@ impl Driver {
     ///
     /// # Errors
     /// What a row there may show.
-    pub(super) fn passage(&mut self, cx: Context, event: &Event, t: f64) -> Result<Option<Vec<f64>>, RunError> {
+    pub(super) fn passage(&mut self, cx: Context, event: usize, t: f64) -> Result<Option<Vec<f64>>, RunError> {
         let Some(variation) = &self.recorder.variation else { return Ok(None) };
         let count = variation.count();
         if self.step_at_hand().is_none() {
@@ -96,7 +96,7 @@ impl Driver {
                 return Ok(Some(crossed));
             }
         }
-        let Event { when, columns, .. } = event;
+        let Event { when, columns, .. } = &cx.system.watched_events()[event];
         let mut shown = Snapshot::new(cx.system);
         let theta = self.read(cx, t, 0, &mut shown)?;
         let rates = self.rates(cx, columns, &shown)?;
@@ -118,6 +118,7 @@ impl Driver {
                 None => changes.fill(f64::NAN),
             }
         }
+        variation.add_when(event, (branch, t), &values, &mut changes);
         let grazes = speed.abs() <= GRAZES * parts;
         let later = changes.into_iter().map(|change| match change {
             0.0 => 0.0,

@@ -73,7 +73,7 @@ impl<'a> Output<'a> {
     pub(super) fn event(&mut self, cx: Context, driver: &mut Driver, event: usize, at: f64) -> Result<(), RunError> {
         driver.show(cx, at, self.written.rows, &mut self.snapshot)?;
         self.take_row(cx, driver)?;
-        let later = driver.passage(cx, &cx.system.watched_events()[event], at)?.unwrap_or_default();
+        let later = driver.passage(cx, event, at)?.unwrap_or_default();
         self.follow_event(cx, driver, &later)?;
         self.tell_lost(driver);
         self.rows.event(event, &self.row, &later)?;

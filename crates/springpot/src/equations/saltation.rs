@@ -180,6 +180,16 @@ impl Variation {
         (0..later.len()).filter(|p| later[*p] != 0.0).for_each(|p| self.lose(p, t, &why));
     }
 
+    /// Adds what parameters change of the function of an event on a branch, at t and where its columns have these values.
+    pub(crate) fn add_when(&self, number: usize, (branch, t): (u64, f64), columns: &[f64], changes: &mut [f64]) {
+        let own = self.of_seeds(|seed| match seed {
+            Seed::When { event, by } if *event == number => by.value_on(branch, t, columns),
+            Seed::WhenOfTime { event, by } if *event == number => by.value(t),
+            _ => 0.0,
+        });
+        changes.iter_mut().zip(own).for_each(|(change, own)| *change += own);
+    }
+
     /// An event sets what it sets, at `t`, later by so much, s.
     pub(crate) fn set(&mut self, number: usize, event: &Event, t: f64, later: Vec<f64>) {
         let Action::Set(settings) = &event.action else { return };

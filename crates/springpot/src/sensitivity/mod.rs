@@ -125,6 +125,20 @@ pub enum Seed {
         /// By how much that.
         by: Signal,
     },
+    /// The function of an event.
+    When {
+        /// Which of [`System::events`].
+        event: usize,
+        /// By how much.
+        by: FeedbackSlope,
+    },
+    /// The function of an event that hangs on t alone.
+    WhenOfTime {
+        /// Which of [`System::events`].
+        event: usize,
+        /// By how much.
+        by: Signal,
+    },
     /// What an event sets.
     Set {
         /// Which of [`System::events`].
