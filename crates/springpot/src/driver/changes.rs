@@ -50,14 +50,14 @@ impl Driver {
 
     /// How much later functions of time switch that do so between two times.
     pub(super) fn vary_switches(&mut self, cx: Context, [before, after]: [f64; 2]) {
-        let Some(variation) = &mut self.recorder.variation else { return };
+        let Recorder { equations, variation: Some(variation), .. } = &mut self.recorder else { return };
         let sources: Vec<(Switched, &Signal)> = sources(cx.system).filter(|(_, signal)| signal.has_kinks()).collect();
         let switches = |of: Switched| {
             let own = sources.iter().find(|(source, _)| *source == of);
             own.is_some_and(|(_, signal)| signal.branch(before) != signal.branch(after) || signal.turns_at(before))
         };
         let all: Vec<Switched> = sources.iter().map(|(source, _)| *source).collect();
-        variation.switch(after, switches, &all);
+        variation.switch(equations, after, switches, &all);
     }
 
     /// What an event that acts at `t` changes by parameters.
@@ -67,8 +67,8 @@ impl Driver {
     pub(super) fn vary_event(&mut self, cx: Context, number: usize, t: f64) -> Result<(), RunError> {
         let event = &cx.system.watched_events()[number];
         let Some(later) = self.passage(cx, number, t)? else { return Ok(()) };
-        if let Some(variation) = &mut self.recorder.variation {
-            variation.set(number, event, t, later);
+        if let Recorder { equations, variation: Some(variation), .. } = &mut self.recorder {
+            variation.set(equations, (number, event), (t, later));
         }
         Ok(())
     }

@@ -7,8 +7,9 @@ use super::assembly::Equations;
 use super::evaluate::Evaluation;
 use super::node::Node;
 use super::variation::Variation;
+use crate::collocation::STAGES;
 use crate::dual::Dual;
-use crate::law::Network;
+use crate::law::{InputValue, Network, Point};
 use crate::sensitivity::{Lost, Seed, SensitivityError, Switched};
 use crate::system::{Action, Event, Setting};
 use serde::{Deserialize, Serialize};
@@ -24,6 +25,41 @@ const ON_IT: f64 = 1e-6;
 
 /// A switch this near is here, as a share of the time.
 const HERE: f64 = 1e-12;
+
+/// What is known of a change that is about to be crossed, and of those before.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Saltation {
+    /// How much later the change at the present time comes, s, where the motion starts anew.
+    later: Option<Vec<f64>>,
+    /// The accelerations on the near side of that change, where the end of the step has those behind it.
+    arrived: Option<Vec<f64>>,
+    /// Elements whose inputs jump there, and what these were before.
+    jumping: Vec<(usize, Vec<InputValue>)>,
+    /// How much later what was crossed last comes, and when that was.
+    last: Option<(f64, Vec<f64>)>,
+    pub(super) held: SetVariation,
+    /// Where derivatives ended, parameter by parameter.
+    pub(super) lost: Vec<Option<Lost>>,
+}
+
+impl Saltation {
+    /// Of so many parameters, before any change.
+    pub(super) fn new(count: usize) -> Self {
+        Self {
+            later: None,
+            arrived: None,
+            jumping: Vec::new(),
+            last: None,
+            held: SetVariation::default(),
+            lost: vec![None; count],
+        }
+    }
+
+    /// Whether it is of so many parameters.
+    pub(super) fn fits(&self, count: usize) -> bool {
+        self.lost.len() == count
+    }
+}
 
 /// What parameters change of what is held in place of signals: those that are not among them are held at what no parameter moves.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -57,17 +93,17 @@ impl SetVariation {
 impl Variation {
     /// Whether the derivatives by parameter `p` exist so far.
     pub(crate) fn knows(&self, p: usize) -> bool {
-        self.lost[p].is_none()
+        self.saltation.lost[p].is_none()
     }
 
     /// Where derivatives ended, parameter by parameter.
     pub(crate) fn lost(&self) -> &[Option<Lost>] {
-        &self.lost
+        &self.saltation.lost
     }
 
     /// Derivatives by parameter `p` end at `t`.
     pub(crate) fn lose(&mut self, p: usize, t: f64, why: &str) {
-        self.lost[p].get_or_insert_with(|| Lost { parameter: p, t, why: why.to_owned() });
+        self.saltation.lost[p].get_or_insert_with(|| Lost { parameter: p, t, why: why.to_owned() });
     }
 
     fn lose_all(&mut self, t: f64, why: &str) {
@@ -87,7 +123,7 @@ impl Variation {
 
     /// The change at the present time, `t`, comes later by so much, s, parameter by parameter.
     pub(crate) fn comes_later(&mut self, t: f64, later: Vec<f64>) {
-        let known = self.later.take();
+        let known = self.saltation.later.take();
         for p in 0..later.len() {
             let other = known.as_ref().map_or(later[p], |known| known[p]);
             if !later[p].is_finite() {
@@ -96,7 +132,7 @@ impl Variation {
                 self.lose(p, t, "two changes come at one time, which it moves apart");
             }
         }
-        self.later = Some(later);
+        self.saltation.later = Some(later);
     }
 
     /// These velocities come to rest at the present time, where the robot is `at`.
@@ -131,7 +167,13 @@ impl Variation {
     }
 
     /// Functions of time switch at `t`, those that `switches` says.
-    pub(crate) fn switch(&mut self, t: f64, switches: impl Fn(Switched) -> bool, sources: &[Switched]) {
+    pub(crate) fn switch(
+        &mut self,
+        equations: &Equations,
+        t: f64,
+        switches: impl Fn(Switched) -> bool,
+        sources: &[Switched],
+    ) {
         let by = self.by.clone();
         let mut later = vec![0.0; self.count()];
         for (p, parameter) in by.parameters.iter().enumerate() {
@@ -160,24 +202,37 @@ impl Variation {
             self.comes_later(t, later);
             for source in sources.iter().filter(|source| switches(**source)) {
                 if let Switched::Input { element, .. } = source {
-                    self.jump_of_input(*element, t);
+                    self.note_inputs(equations, *element, t);
                 }
             }
         }
     }
 
-    /// An input of element `e` jumps with the change at the present time.
-    fn jump_of_input(&mut self, e: usize, t: f64) {
-        let law = &self.system.elements[e].law;
-        if !law.has_inner_variables() && law.hidden_errors() != usize::MAX && law.as_heated().is_none() {
+    /// An input of element `e` jumps with the change at the present time, `t`; the bank has what it was before at the end of the last step.
+    pub(crate) fn note_inputs(&mut self, equations: &Equations, e: usize, t: f64) {
+        let (element, at) = (&self.system.elements[e], equations.bank.point(e, STAGES));
+        let state = equations.bank.law_state(e);
+        if state.and_then(|state| element.law.rates(&at, state)).is_some() {
+            self.saltation.jumping.push((e, at.inputs.to_vec()));
             return;
         }
-        let why = format!(
-            "an input of \"{}\" jumps at a time that it moves, and the law keeps what it did",
-            self.system.elements[e].name
-        );
-        let later = self.later.clone().unwrap_or_default();
+        let name = &element.name;
+        let why =
+            format!("an input of \"{name}\" jumps at a time that it moves, and the law has more inside than it tells");
+        let later = self.saltation.later.clone().unwrap_or_default();
         (0..later.len()).filter(|p| later[*p] != 0.0).for_each(|p| self.lose(p, t, &why));
+    }
+
+    /// Inner variables of laws whose inputs jump go on with other rates: δz⁺ = δz⁻ + (z'⁻ − z'⁺) δt*.
+    fn turn_inner_variables(&mut self, equations: &Equations, later: &[f64]) {
+        let known: Vec<f64> = later.iter().map(|later| if later.is_finite() { *later } else { 0.0 }).collect();
+        for (e, inputs) in std::mem::take(&mut self.saltation.jumping) {
+            let (law, at) = (&self.system.elements[e].law, equations.bank.point(e, 0));
+            let Some(state) = equations.bank.law_state(e) else { continue };
+            let sides = [Point { inputs: &inputs, ..at }, at];
+            let [before, after] = sides.map(|at| law.rates(&at, state).unwrap_or_default());
+            self.elements[e].law.jump([&before, &after], &known);
+        }
     }
 
     /// Adds what parameters change of the function of an event on a branch, at t and where its columns have these values.
@@ -191,7 +246,7 @@ impl Variation {
     }
 
     /// An event sets what it sets, at `t`, later by so much, s.
-    pub(crate) fn set(&mut self, number: usize, event: &Event, t: f64, later: Vec<f64>) {
+    pub(crate) fn set(&mut self, equations: &Equations, (number, event): (usize, &Event), (t, later): (f64, Vec<f64>)) {
         let Action::Set(settings) = &event.action else { return };
         self.comes_later(t, later);
         for (k, setting) in settings.iter().enumerate() {
@@ -202,12 +257,12 @@ impl Variation {
             let by = self.of_seeds(own);
             match *setting {
                 Setting::Torque { velocity, .. } => {
-                    self.held.drives.retain(|(held, _)| *held != velocity);
-                    self.held.drives.push((velocity, by));
+                    self.saltation.held.drives.retain(|(held, _)| *held != velocity);
+                    self.saltation.held.drives.push((velocity, by));
                 }
                 Setting::Input { element, input, .. } => {
                     self.hold_input([element, input], Some(by));
-                    self.jump_of_input(element, t);
+                    self.note_inputs(equations, element, t);
                 }
             }
         }
@@ -215,13 +270,13 @@ impl Variation {
 
     /// An input is held from outside, or given back to its signal; it changes by so much.
     pub(crate) fn hold_input(&mut self, at: [usize; 2], by: Option<Vec<f64>>) {
-        self.held.inputs.retain(|(held, _)| *held != at);
-        self.held.inputs.extend(by.map(|by| (at, by)));
+        self.saltation.held.inputs.retain(|(held, _)| *held != at);
+        self.saltation.held.inputs.extend(by.map(|by| (at, by)));
     }
 
     /// A step ends in which accelerations were `a` at its start, so short that they were so until the change behind it.
     pub(crate) fn arrive(&mut self, a: &[f64]) {
-        self.arrived = Some(a.to_vec());
+        self.saltation.arrived = Some(a.to_vec());
     }
 
     /// Goes to the far side of what was crossed, `start`, where velocities and accelerations were those `before` and are those `after`; at a
@@ -243,22 +298,26 @@ impl Variation {
             pairs.fold(0.0, |jump: f64, (_, (before, after))| jump.max((before - after).abs())) > JUMP * largest
         };
         let ([v, a], [v_after, a_after]) = (before, after);
-        let arrived = self.arrived.take();
+        let arrived = self.saltation.arrived.take();
         let a = arrived.as_deref().unwrap_or(a);
         if jump(v, v_after, &|k| equations.free().contains(&k)) {
             self.lose_all(start.t, "velocities jump with that of a joint that a signal moves");
         }
-        match self.later.take() {
+        match self.saltation.later.take() {
             Some(later) => {
                 for (k, (before, after)) in a.iter().zip(a_after).enumerate() {
                     let blocks = self.own_v[k] * count..;
                     let changes = self.nodes[0].v[blocks].iter_mut().zip(&later).filter(|(_, later)| later.is_finite());
                     changes.for_each(|(v, later)| *v += (before - after) * later);
                 }
-                self.last = Some((start.t, later));
+                self.turn_inner_variables(equations, &later);
+                self.saltation.last = Some((start.t, later));
             }
             None if is_own && jump(a, a_after, &|_| true) => self.lose_all(start.t, "forces jump there"),
-            None => self.last = None,
+            None => {
+                self.saltation.jumping.clear();
+                self.saltation.last = None;
+            }
         }
         self.hold_still(equations);
         if let (Some(control), Some(run)) = (&mut self.control, &equations.control) {
@@ -273,7 +332,7 @@ impl Variation {
 
     /// How much later what was crossed last comes, s, where that was at `t`.
     pub(crate) fn crossed(&self, t: f64) -> Vec<f64> {
-        match &self.last {
+        match &self.saltation.last {
             Some((at, later)) if (t - at).abs() <= HERE * t => later.clone(),
             _ => vec![0.0; self.count()],
         }

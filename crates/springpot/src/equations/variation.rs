@@ -3,22 +3,24 @@
 mod singular;
 
 use super::assembly::Equations;
-use super::control::{ControlRun, ControlVariation, ControlVariationState, HeldVariation, Place, Shown, Sides, Target};
+use super::control::{
+    ControlRun, ControlVariation, ControlVariationState, HeldVariation, Jump, Place, Shown, Sides, Target,
+};
 use super::node::Node;
 use super::resistance::add_tangents;
-use super::saltation::SetVariation;
+use super::saltation::Saltation;
 use super::solve::Solve;
 use crate::collocation::STAGES;
 use crate::dynamics::{
     Kinematics, RneaDerivatives, Workspace, add_gravity_effort, add_inertia_effort, coriolis, gravity, kinetic_energy,
     point_jacobian, potential_energy,
 };
-use crate::elements::{Forces, Pull, Reading};
+use crate::elements::{Element, Forces, Pull, Reading};
 use crate::law::variation::{LawVariation, ObservationVariation, PointVariation, StepVariation};
 use crate::law::{Derivative, Network, Response};
 use crate::model::{FrictionLaw, Model};
 use crate::observe::{ElementQuantity, EnergyQuantity, Quantity, Snapshot};
-use crate::sensitivity::{Lost, Seed, Sensitivity, SensitivityError};
+use crate::sensitivity::{Seed, Sensitivity, SensitivityError};
 use crate::spatial::Inertia;
 use crate::system::{Motion, System};
 use serde::{Deserialize, Serialize};
@@ -50,15 +52,8 @@ pub(crate) struct Variation {
     pub(crate) solve: Solve,
     /// Right-hand sides of a step, side by side.
     pub(crate) right: Vec<f64>,
-    /// How much later the change at the present time comes, s, where the motion starts anew.
-    pub(super) later: Option<Vec<f64>>,
-    /// The accelerations on the near side of that change, where the end of the step has those behind it.
-    pub(super) arrived: Option<Vec<f64>>,
-    /// The same of what was crossed last, and when that was.
-    pub(super) last: Option<(f64, Vec<f64>)>,
-    pub(super) held: SetVariation,
-    /// Where derivatives ended, parameter by parameter.
-    pub(super) lost: Vec<Option<Lost>>,
+    /// Of a change that is about to be crossed, and of those before.
+    pub(super) saltation: Saltation,
     /// Of what follows from the state, where anything does.
     pub(super) control: Option<Box<ControlVariation>>,
 }
@@ -109,11 +104,7 @@ pub(crate) struct VariationState {
     sizes: [Vec<f64>; 2],
     singular: SingularState,
     laws: Vec<LawVariation>,
-    later: Option<Vec<f64>>,
-    arrived: Option<Vec<f64>>,
-    last: Option<(f64, Vec<f64>)>,
-    held: SetVariation,
-    lost: Vec<Option<Lost>>,
+    saltation: Saltation,
     control: Option<ControlVariationState>,
 }
 
@@ -246,11 +237,7 @@ impl Variation {
             workspace: Workspace::new(model),
             solve: Solve::default(),
             right: Vec::new(),
-            later: None,
-            arrived: None,
-            last: None,
-            held: SetVariation::default(),
-            lost: vec![None; count],
+            saltation: Saltation::new(count),
             by: by.clone(),
             system: extended.clone(),
             control,
@@ -290,6 +277,11 @@ impl Variation {
         for (sizes, now) in [(q, &start.q), (v, &start.v)] {
             sizes.iter_mut().zip(now).for_each(|(size, now)| *size = size.max(now.abs()));
         }
+    }
+
+    /// An element of the extended robot.
+    pub(super) fn element(&self, e: usize) -> &Element {
+        &self.system.elements[e]
     }
 
     /// Number of parameters.
@@ -381,9 +373,14 @@ impl Variation {
         let rests = |e: usize| &self.elements[e].rest[..];
         let motion = [&self.q[..], &node.v_now, &node.a_now];
         let at = Place { t: node.t, motion, kinematics: &node.kinematics, readings: &node.readings, rests: &rests };
-        let found = control.foresee(i, run, at, [&node.q, &node.v])?;
+        let found = control.foresee(i, run, at, [&node.q, &node.v]);
         let t = node.t;
-        found.into_iter().for_each(|(later, _)| self.comes_later(t, later));
+        for Jump { moved, element, .. } in found {
+            self.comes_later(t, moved);
+            if let Some(e) = element {
+                self.note_inputs(equations, e, t);
+            }
+        }
         Ok(())
     }
 
@@ -434,7 +431,8 @@ impl Variation {
 
     /// Looks at node `i` of the step, where the run is at `at`: what its elements measure, and their inputs.
     pub(crate) fn look(&mut self, i: usize, at: Node) {
-        let Self { by, system, own_q, own_v, q, nodes, elements, held, workspace, .. } = self;
+        let Self { by, system, own_q, own_v, q, nodes, elements, saltation: Saltation { held, .. }, workspace, .. } =
+            self;
         let (model, node, count) = (&system.model, &mut nodes[i], by.parameters.len());
         own_q.iter().zip(at.q).for_each(|(&k, value)| q[k] = *value);
         for (&k, (v, a)) in own_v.iter().zip(at.v.iter().zip(at.a)) {
@@ -485,7 +483,8 @@ impl Variation {
     /// Looks at node `i`, where the elements pull with `force`, and sees the slopes there, and what changes where the motion stays.
     pub(crate) fn see(&mut self, equations: &Equations, i: usize, at: Node, force: &[f64]) {
         self.look(i, at);
-        let Self { by, system, own_v, nodes, forces, workspace, held, inertias, .. } = self;
+        let Self { by, system, own_v, nodes, forces, workspace, saltation: Saltation { held, .. }, inertias, .. } =
+            self;
         let (model, node, count) = (&system.model, &mut nodes[i], by.parameters.len());
         forces.clear();
         for (element, force) in system.elements.iter().zip(force) {
@@ -754,22 +753,17 @@ impl Variation {
             singular: self.singular.save(self.count()),
             laws,
             control,
-            later: self.later.clone(),
-            arrived: self.arrived.clone(),
-            last: self.last.clone(),
-            held: self.held.clone(),
-            lost: self.lost.clone(),
+            saltation: self.saltation.clone(),
         }
     }
 
     /// Goes on from what was saved where the run is at `start`; `false` where that is of another one.
     pub(crate) fn load(&mut self, state: VariationState, equations: &Equations, start: Node) -> bool {
-        let VariationState { motion: [q, v, a], sizes, singular, laws, control, later, arrived, last, held, lost } =
-            state;
+        let VariationState { motion: [q, v, a], sizes, singular, laws, control, saltation } = state;
         let (blocks, count) = (self.sizes[0].len(), self.count());
         if !self.singular.load(singular, count)
             || laws.len() != self.elements.len()
-            || lost.len() != self.lost.len()
+            || !saltation.fits(self.count())
             || [&q, &v, &a].into_iter().chain(&sizes).any(|own| own.len() != blocks)
         {
             return false;
@@ -783,8 +777,7 @@ impl Variation {
         }
         let [node, ..] = &mut self.nodes;
         (node.q, node.v, node.a, self.sizes) = (q, v, a, sizes);
-        (self.later, self.arrived, self.last) = (later, arrived, last);
-        (self.held, self.lost) = (held, lost);
+        self.saltation = saltation;
         self.elements.iter_mut().zip(laws).for_each(|(element, law)| element.law = law);
         self.see_start(equations, start);
         true
@@ -855,7 +848,11 @@ impl Variation {
     /// of it.
     pub(crate) fn values(&self, quantity: Quantity, snapshot: &Snapshot) -> Option<Vec<f64>> {
         let mut values = self.finite_values(quantity, snapshot)?;
-        values.iter_mut().zip(&self.lost).filter(|(_, lost)| lost.is_some()).for_each(|(value, _)| *value = f64::NAN);
+        values
+            .iter_mut()
+            .zip(&self.saltation.lost)
+            .filter(|(_, lost)| lost.is_some())
+            .for_each(|(value, _)| *value = f64::NAN);
         Some(values)
     }
 
@@ -985,7 +982,7 @@ impl Variation {
 
     /// What changes of the force of the actuator of velocity `k`.
     fn driven(&self, k: usize, p: usize, t: f64) -> f64 {
-        if let Some(held) = self.held.drive(k) {
+        if let Some(held) = self.saltation.held.drive(k) {
             return held[p];
         }
         let seeds = self.by.parameters[p].seeds.iter();

@@ -304,6 +304,12 @@ impl Network {
         self.ask().begin_variation(at, &mut state.view(), told, &mut own.view_mut());
     }
 
+    /// How fast its inner variables change, in their order; `None` where somebody does not tell.
+    pub(crate) fn rates(&self, at: &Point, state: &State) -> Option<Vec<f64>> {
+        let mut rates = Vec::new();
+        self.ask().rates(at, &mut state.view(), &mut rates).then_some(rates)
+    }
+
     /// What parameters change of its forces at the nodes of a step where strokes and rates there stay, node by node, a block for each
     /// ([`super::Leaf::vary`]).
     pub fn vary(&self, step: &Step, state: &State, told: &StepVariation, own: &LawVariation, forces: &mut [f64]) {

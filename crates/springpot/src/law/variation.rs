@@ -122,6 +122,14 @@ impl LawVariation {
         Ok(begun)
     }
 
+    /// The rates of inner variables jump by these, from before to after, at a time that parameters move so.
+    pub(crate) fn jump(&mut self, [before, after]: [&[f64]; 2], moved: &[f64]) {
+        let blocks = self.variables.chunks_exact_mut(self.count.max(1));
+        for (block, (before, after)) in blocks.zip(before.iter().zip(after)) {
+            block.iter_mut().zip(moved).for_each(|(own, moved)| *own += (before - after) * moved);
+        }
+    }
+
     /// Of the inner variables of the law, a block for each.
     pub fn variables(&self) -> &[f64] {
         &self.variables

@@ -18,7 +18,7 @@ pub(crate) use mode::Guard;
 pub(crate) use row::Misread;
 pub(crate) use sampler::{Sampler, SamplerState, Shown};
 pub(crate) use step::End;
-pub(crate) use variation::{ControlVariation, ControlVariationState, Held as HeldVariation, Place, Sides};
+pub(crate) use variation::{ControlVariation, ControlVariationState, Held as HeldVariation, Jump, Place, Sides};
 
 use crate::collocation::STAGES;
 use crate::control::{Aim, AntiWindup, At, Control, Controlled, Feedback, Limit, Scratch, TorqueSlopes};

@@ -81,6 +81,17 @@ pub(crate) struct Sides {
     pub(super) force: i8,
 }
 
+/// A force that jumps at a time that parameters move.
+#[derive(Debug)]
+pub(crate) struct Jump {
+    /// δt*.
+    pub(crate) moved: Vec<f64>,
+    /// The column that says what jumps.
+    pub(crate) what: String,
+    /// The element whose input it is, where it is one.
+    pub(crate) element: Option<usize>,
+}
+
 /// A joint that was on another branch.
 #[derive(Debug)]
 struct Left {
@@ -670,16 +681,7 @@ impl ControlVariation {
 
     /// Looks at what `run` is about to leave at node `i`, where the motion changes by these blocks: by how much parameters move the times of jumps of
     /// forces, and what jumps.
-    ///
-    /// # Errors
-    /// Where that has no derivative.
-    pub(crate) fn foresee(
-        &mut self,
-        i: usize,
-        run: &ControlRun,
-        at: Place,
-        motion: [&[f64]; 2],
-    ) -> Result<Vec<(Vec<f64>, String)>, SensitivityError> {
+    pub(crate) fn foresee(&mut self, i: usize, run: &ControlRun, at: Place, motion: [&[f64]; 2]) -> Vec<Jump> {
         let mut found = Vec::new();
         if i > 0 {
             self.push(i, run, true);
@@ -689,15 +691,11 @@ impl ControlVariation {
         for &guard in run.leaves() {
             match guard {
                 Guard::Branch { law, bit } if self.laws[law].law.expression().jumps_at(bit) => {
-                    let what = self.laws[law].target.column(&self.system);
-                    if let Target::Input(e, _) = self.laws[law].target
-                        && self.system.elements[e].law.hidden_errors() > 0
-                    {
-                        return Err(SensitivityError::Unknown {
-                            what: format!("jumps of {what}, of which the law remembers more than its stroke"),
-                        });
-                    }
-                    found.push((self.moved((law, bit), run, at, motion), what));
+                    let target = self.laws[law].target;
+                    let what = target.column(&self.system);
+                    let element = if let Target::Input(e, _) = target { Some(e) } else { None };
+                    let moved = self.moved((law, bit), run, at, motion);
+                    found.push(Jump { moved, what, element });
                 }
                 Guard::Branch { .. } => {}
                 Guard::Reaches { joint, .. }
@@ -729,7 +727,7 @@ impl ControlVariation {
                 }
             }
         }
-        Ok(found)
+        found
     }
 
     /// By how much parameters move the time at which a kink of an expression is passed: δt* = −δγ/γ̇.

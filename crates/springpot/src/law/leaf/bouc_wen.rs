@@ -94,6 +94,11 @@ impl Leaf for BoucWen {
         self.at_end(step, &[start], &z, &mut |z| state.variables[0] = z);
     }
 
+    fn rates(&self, at: &Point, state: StateRef, rates: &mut Vec<f64>) -> bool {
+        rates.push(self.hysteresis.rate(state.variables[0], at.rate));
+        true
+    }
+
     fn local_errors(&self, step: &Step, state: StateRef, errors: &mut Vec<LocalError>) {
         let (z, _) = self.solve(step, state.variables[0]);
         let defect = step.h * step.quadrature_defect(&self.rates(step, &z));

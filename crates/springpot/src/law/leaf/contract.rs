@@ -226,6 +226,11 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
         self.by_columns().map(|own| own.numbers(take)).is_some()
     }
 
+    /// Appends how fast its inner variables change, where it is asked at one time: an input that jumps lets them turn there. `false`: that is not told.
+    fn rates(&self, _at: &Point, _state: StateRef, _rates: &mut Vec<f64>) -> bool {
+        self.size().variables == 0
+    }
+
     /// Puts what changes of its state at t = 0, by its own numbers and by what is `told` of `at`; also again, where that was not all of it.
     fn begin_variation(&self, at: &Point, _state: StateRef, told: &PointVariation, own: VariationMut) {
         if let Some(columns) = self.by_columns() {

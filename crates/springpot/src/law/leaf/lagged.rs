@@ -241,6 +241,13 @@ impl<L: Leaf> Leaf for Lagged<L> {
         self.leaf.begin_memories(Self::split(state).1, own, memories)
     }
 
+    fn rates(&self, at: &Point, state: StateRef, rates: &mut Vec<f64>) -> bool {
+        let (start, rest) = Self::split(state);
+        let inputs = self.told(at, start);
+        rates.push(inputs[0].rate);
+        self.leaf.rates(&Point { inputs: &inputs, ..*at }, rest, rates)
+    }
+
     fn begin_variation(&self, at: &Point, state: StateRef, told: &PointVariation, mut own: VariationMut) {
         let of_w = own.take(1, OWN);
         // w(0) = u(0), and its rate is 0.

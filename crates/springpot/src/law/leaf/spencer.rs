@@ -147,6 +147,13 @@ impl Leaf for Spencer {
         Ok(())
     }
 
+    fn rates(&self, at: &Point, state: StateRef, rates: &mut Vec<f64>) -> bool {
+        let [y, z] = Self::start(state);
+        let rate = self.y_rate(&self.coefficients_at(at.inputs), at, y, z);
+        rates.extend([rate, self.hysteresis.rate(z, at.rate - rate)]);
+        true
+    }
+
     fn evaluate(&self, step: &Step, state: StateRef, response: &mut Response) {
         let solved = self.solve(step, Self::start(state));
         let Solved { now, by_drive, by_slip, .. } = &solved;

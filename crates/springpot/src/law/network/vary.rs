@@ -36,6 +36,11 @@ pub(in crate::law) trait Vary: Part {
         self.parts().iter().for_each(|part| part.ask().begin_variation(at, state, told, own));
     }
 
+    /// Appends how fast its inner variables change ([`crate::law::Leaf::rates`]).
+    fn rates(&self, at: &Point, state: &mut StateRef, rates: &mut Vec<f64>) -> bool {
+        self.parts().iter().all(|part| part.ask().rates(at, state, rates))
+    }
+
     /// Adds what changes of its forces at the nodes ([`crate::law::Leaf::vary`]).
     fn vary(
         &self,
@@ -136,6 +141,10 @@ impl Vary for LeafPart {
     fn begin_variation(&self, at: &Point, state: &mut StateRef, told: &PointVariation, own: &mut VariationMut) {
         let size = self.leaf.size();
         self.leaf.begin_variation(at, state.take(size), told, own.take(self.number_count(), size));
+    }
+
+    fn rates(&self, at: &Point, state: &mut StateRef, rates: &mut Vec<f64>) -> bool {
+        self.leaf.rates(at, state.take(self.leaf.size()), rates)
     }
 
     fn vary(

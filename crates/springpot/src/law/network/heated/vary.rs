@@ -96,6 +96,11 @@ impl Vary for Heated {
         self.law.ask().begin_variation(&place.point(), state, &inside.point(told), own);
     }
 
+    /// Of what a temperature moves nothing is told.
+    fn rates(&self, _: &Point, _: &mut StateRef, _: &mut Vec<f64>) -> bool {
+        false
+    }
+
     fn vary(
         &self,
         step: &Step,

@@ -372,6 +372,11 @@ impl Vary for Series {
         vary_start::begin(self, at, state, told, own);
     }
 
+    /// Of inner strokes nothing is told.
+    fn rates(&self, _: &Point, _: &mut StateRef, _: &mut Vec<f64>) -> bool {
+        false
+    }
+
     fn vary(
         &self,
         step: &Step,
