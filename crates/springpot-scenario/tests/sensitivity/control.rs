@@ -1,6 +1,6 @@
 //! Robots that are controlled: derivatives by gains, orders, references and limits, and by all else through them.
 
-use super::{ARM, compare, plan, said, scenario};
+use super::{ARM, compare, plan, rows, said, scenario};
 use springpot::Simulation;
 
 /// The arm with a springpot across its second joint under this controller.
@@ -326,5 +326,35 @@ fn what_controllers_do_not_know_is_refused() {
     let mut asked = scenario(&fed_back("0.2*step(t - level)*abs(v.q2)", "q1 = 0.1"));
     asked.differentiate("constants.level").unwrap();
     let said = said(&asked);
-    assert!(said.contains("bends or jumps"), "{said}");
+    assert!(said.contains("`step` bends or jumps where the constant has it"), "{said}");
+}
+
+#[test]
+fn a_gain_of_0_has_a_derivative_and_changes_nothing() {
+    let text = arm(&format!(
+        "controller = {{ kind = \"fractional-pid\", kp = 60, ki = {{ q1 = 30 }}, lambda = 0.7, mu = 0.6, {MOVE} }}"
+    ));
+    let names: Vec<String> = COLUMNS.map(str::to_owned).to_vec();
+    let by = "by = [\"motion.controller.ki.q2\", \"motion.controller.kd\"]";
+    let asked = format!("{text}\n[sensitivity]\n{by}\ncontrol = false\n");
+    assert_eq!(rows(&plan(&scenario(&asked)).unwrap(), &names), rows(&plan(&scenario(&text)).unwrap(), &names));
+    // From inside: a second difference from 0 on.
+    let paths = ["motion.controller.ki.q2", "motion.controller.kd"];
+    let told: Vec<String> = paths.iter().map(|path| format!("d(q.q2)/d({path})")).collect();
+    let found = rows(&plan(&scenario(&asked)).unwrap(), &told);
+    for (p, path) in paths.iter().enumerate() {
+        let step = 2e-3;
+        let at = |steps: f64| {
+            let mut moved = scenario(&text);
+            moved.set(&format!("{path}={:?}", steps * step)).unwrap();
+            moved.set("solver.rtol=1e-12").unwrap();
+            rows(&plan(&moved).unwrap(), &names[1..2])
+        };
+        let [none, one, two, three] = [0.0, 1.0, 2.0, 3.0].map(at);
+        for r in 0..none.len() {
+            let slope = -11.0 / 6.0 * none[r][0] + 3.0 * one[r][0] - 1.5 * two[r][0] + three[r][0] / 3.0;
+            let (found, truth) = (found[r][p], slope / step);
+            assert!((found - truth).abs() < 1e-6 * truth.abs() + 1e-9, "{path}: {found} for {truth}");
+        }
+    }
 }

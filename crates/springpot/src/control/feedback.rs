@@ -113,8 +113,12 @@ impl FeedbackSlope {
         let open = ColumnExpression::parse_open(source, &values(&still), columns, &names)?;
         let all: Vec<(String, f64)> = constants.iter().map(|(name, value, _)| (name.clone(), *value)).collect();
         let closed = ColumnExpression::parse(source, &all, columns)?;
+        let seen = closed.columns().len();
+        if let Some(function) = open.kink_by_none_of(seen) {
+            return Err(SlopeError::Switch { function });
+        }
         if open.kinks() != closed.kinks() || open.kinks_of_time() != closed.kinks_of_time() {
-            return Err(SlopeError::Switch { function: "a function of it" });
+            return Err(SlopeError::Switch { function: "a function" });
         }
         Ok(Self { open, constants: moved.iter().map(|(_, value, slope)| [*value, *slope]).collect(), scale })
     }

@@ -78,8 +78,11 @@ fn same(what: &str, found: &[f64], truth: &[f64]) {
     assert!(off < 1e-9 * size, "{what}: {found:?} for {truth:?}");
 }
 
-/// Every kind, made of gains kp and kd.
-fn kinds() -> Vec<(&'static str, fn([f64; 3], [f64; 3]) -> Arc<dyn Controller>)> {
+/// A law of gains kp and kd.
+type Make = fn([f64; 3], [f64; 3]) -> Arc<dyn Controller>;
+
+/// Every kind.
+fn kinds() -> Vec<(&'static str, Make)> {
     vec![
         ("pd-gravity", |kp, kd| Arc::new(PdGravity { kp: kp.to_vec(), kd: kd.to_vec() })),
         ("computed-torque", |kp, kd| {

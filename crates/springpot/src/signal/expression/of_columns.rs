@@ -151,6 +151,27 @@ impl ColumnExpression {
         kinks.nth(bit as usize).is_some_and(|op| matches!(op, Op::Sign | Op::Step | Op::Atan2))
     }
 
+    /// The first function that bends or jumps by columns, but by none of the first `count`.
+    pub(crate) fn kink_by_none_of(&self, count: usize) -> Option<&'static str> {
+        let kinks = (0..self.program.len()).filter(|at| self.program[*at].has_kink());
+        let mut alone = kinks.filter(|&at| {
+            let own = &self.program[self.first_of(at)..at];
+            let is_seen = |op: &Op| matches!(op, Op::Column(k) if *k < count);
+            own.iter().any(|op| matches!(op, Op::Column(_))) && !own.iter().any(is_seen)
+        });
+        alone.next().map(|at| match self.program[at] {
+            Op::Abs => "abs",
+            Op::Sign => "sign",
+            Op::Step => "step",
+            Op::Min => "min",
+            Op::Max => "max",
+            Op::Atan2 => "atan2",
+            Op::AsinSin => "asin",
+            Op::AcosCos => "acos",
+            _ => "a function",
+        })
+    }
+
     /// How many kinks it has.
     pub(crate) fn kinks(&self) -> usize {
         self.program.iter().filter(|op| op.has_kink()).count()
