@@ -18,7 +18,6 @@ mod pose;
 pub(crate) mod resistance;
 mod rounding;
 mod rows;
-mod saltation;
 mod scale;
 mod solve;
 mod state;

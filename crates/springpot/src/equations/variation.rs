@@ -1,28 +1,29 @@
 //! What parameters change at the nodes of a step: the equations of motion linearised there, and their right sides.
 
+mod control;
+mod inertias;
+mod saltation;
 mod singular;
 
 use super::assembly::Equations;
-use super::control::{
-    ControlRun, ControlVariation, ControlVariationState, HeldVariation, Jump, Place, Shown, Sides, Target,
-};
+use super::control::{ControlVariation, ControlVariationState};
 use super::node::Node;
 use super::resistance::add_tangents;
-use super::saltation::Saltation;
 use super::solve::Solve;
 use crate::collocation::STAGES;
 use crate::dynamics::{
     Kinematics, RneaDerivatives, Workspace, add_gravity_effort, add_inertia_effort, coriolis, gravity, kinetic_energy,
     point_jacobian, potential_energy,
 };
-use crate::elements::{Element, Forces, Pull, Reading};
+use crate::elements::{Forces, Pull, Reading};
 use crate::law::variation::{LawVariation, ObservationVariation, PointVariation, StepVariation};
 use crate::law::{Derivative, Network, Response};
 use crate::model::{FrictionLaw, Model};
 use crate::observe::{ElementQuantity, EnergyQuantity, Quantity, Snapshot};
 use crate::sensitivity::{Seed, Sensitivity, SensitivityError};
-use crate::spatial::Inertia;
 use crate::system::{Motion, System};
+use inertias::Inertias;
+use saltation::Saltation;
 use serde::{Deserialize, Serialize};
 use singular::{Singular, SingularState};
 use std::ops::Range;
@@ -53,38 +54,9 @@ pub(crate) struct Variation {
     /// Right-hand sides of a step, side by side.
     pub(crate) right: Vec<f64>,
     /// Of a change that is about to be crossed, and of those before.
-    pub(super) saltation: Saltation,
+    saltation: Saltation,
     /// Of what follows from the state, where anything does.
-    pub(super) control: Option<Box<ControlVariation>>,
-}
-
-/// What parameters change of inertias and gravity: parameter, joint or velocity of the extended robot, by how much.
-#[derive(Debug, Default)]
-struct Inertias {
-    links: Vec<(usize, usize, Inertia)>,
-    rotors: Vec<(usize, usize, f64)>,
-    fields: Vec<(usize, [f64; 3])>,
-}
-
-impl Inertias {
-    fn of(by: &Sensitivity) -> Self {
-        let mut own = Self::default();
-        for (p, parameter) in by.parameters.iter().enumerate() {
-            for seed in &parameter.seeds {
-                match seed {
-                    Seed::Inertia(change) => {
-                        let links = (0..change.joint_count()).map(|j| (p, j, *change.link_inertia(j)));
-                        own.links.extend(links.filter(|(_, _, inertia)| *inertia != Inertia::ZERO));
-                        let rotors = change.felt_rotors().iter().enumerate().map(|(k, rotor)| (p, k, *rotor));
-                        own.rotors.extend(rotors.filter(|(_, _, rotor)| *rotor != 0.0));
-                    }
-                    Seed::Gravity(change) => own.fields.push((p, change.gravity())),
-                    _ => {}
-                }
-            }
-        }
-        own
-    }
+    control: Option<Box<ControlVariation>>,
 }
 
 /// Share of what the motion comes to that a change by the whole of a parameter is expected to come to at least.
@@ -279,11 +251,6 @@ impl Variation {
         }
     }
 
-    /// An element of the extended robot.
-    pub(super) fn element(&self, e: usize) -> &Element {
-        &self.system.elements[e]
-    }
-
     /// Number of parameters.
     pub(crate) fn count(&self) -> usize {
         self.by.parameters.len()
@@ -357,30 +324,6 @@ impl Variation {
         self.accelerate(equations);
         self.begin_singular(equations);
         self.take_sizes();
-        Ok(())
-    }
-
-    /// Sees what control is about to leave at node `i`: the start, or the end of the step.
-    ///
-    /// # Errors
-    /// Where that has no derivative.
-    pub(crate) fn foresee(&mut self, i: usize, equations: &Equations) -> Result<(), SensitivityError> {
-        let (Some(control), Some(run)) = (&mut self.control, &equations.control) else { return Ok(()) };
-        if !run.changes() {
-            return Ok(());
-        }
-        let node = &self.nodes[i];
-        let rests = |e: usize| &self.elements[e].rest[..];
-        let motion = [&self.q[..], &node.v_now, &node.a_now];
-        let at = Place { t: node.t, motion, kinematics: &node.kinematics, readings: &node.readings, rests: &rests };
-        let found = control.foresee(i, run, at, [&node.q, &node.v]);
-        let t = node.t;
-        for Jump { moved, element, .. } in found {
-            self.comes_later(t, moved);
-            if let Some(e) = element {
-                self.note_inputs(equations, e, t);
-            }
-        }
         Ok(())
     }
 
@@ -535,32 +478,6 @@ impl Variation {
         }
     }
 
-    /// Sees what follows from the state at node `i`, which was seen, where the elements pull with `force`.
-    pub(crate) fn steer(&mut self, i: usize, equations: &Equations, force: &[f64]) {
-        let (Some(control), Some(run)) = (&mut self.control, &equations.control) else { return };
-        let NodeVariation { t, kinematics, slopes, v_now, a_now, readings, hessians, explicit, .. } =
-            &mut self.nodes[i];
-        let rests = |e: usize| &self.elements[e].rest[..];
-        let at = Place { t: *t, motion: [&self.q, v_now, a_now], kinematics, readings, rests: &rests };
-        control.see(i, run, at, (force, hessians), (slopes, explicit));
-    }
-
-    /// What changes of the inputs that follow from the state at node `i`, where the motion changes as the node has it.
-    pub(crate) fn feed_back(&mut self, i: usize) {
-        let (count, Some(control)) = (self.count(), &self.control) else { return };
-        let node = &self.nodes[i];
-        for (e, input, [by_q, by_v], own) in control.input_slopes(i) {
-            let [values, _] = &mut self.elements[e].inputs;
-            let inputs = values.len() / ((ROW + 1) * count);
-            let change = &mut values[(i * inputs + input) * count..][..count];
-            change.copy_from_slice(own);
-            for (k, (by_q, by_v)) in by_q.iter().zip(by_v).enumerate() {
-                let (q, v) = (&node.q[k * count..][..count], &node.v[k * count..][..count]);
-                change.iter_mut().zip(q.iter().zip(v)).for_each(|(change, (q, v))| *change += by_q * q + by_v * v);
-            }
-        }
-    }
-
     /// Follows the motion at the nodes, as they have it, with all that is told of it.
     pub(crate) fn follow(&mut self, equations: &Equations) {
         for i in 1..=STAGES {
@@ -571,62 +488,6 @@ impl Variation {
             let [nodes @ .., _] = &self.nodes;
             control.follow(run, nodes.each_ref().map(|node| [&node.q[..], &node.v[..]]));
         }
-    }
-
-    /// From now on what sampled laws said changes so.
-    pub(crate) fn hold(&mut self, held: Option<&HeldVariation>) {
-        if let (Some(control), Some(held)) = (&mut self.control, held) {
-            control.hold(held);
-        }
-    }
-
-    /// What changes of what the sampled expression for `target` says of the row that was read.
-    pub(crate) fn say(&self, target: Target, shown: &dyn Shown) -> Vec<f64> {
-        let (node, Some(control)) = (&self.nodes[ROW], &self.control) else { return Vec::new() };
-        let rests = |e: usize| &self.elements[e].rest[..];
-        let motion = [&self.q[..], &node.v_now, &node.a_now];
-        let at = Place { t: node.t, motion, kinematics: &node.kinematics, readings: &node.readings, rests: &rests };
-        let forces = |e: usize| (shown.force(e), self.elements[e].row[0].clone());
-        control.say(target, at, &forces, [&node.q, &node.v, &node.a])
-    }
-
-    /// The same of a sampled controller, ahead of its last limit and behind it.
-    pub(crate) fn say_of_controller(
-        &mut self,
-        run: &ControlRun,
-        told: (&[Sides], &[f64], f64),
-        shown: &dyn Shown,
-    ) -> [Vec<f64>; 2] {
-        let Self { nodes, elements, control, system, .. } = self;
-        let (n, node, Some(control)) = (system.model.nv(), &nodes[ROW], control) else { return Default::default() };
-        let pull = |row: usize, p: usize| {
-            let of = |(e, ([gradient, _], hessian)): (usize, (&[Vec<f64>; 2], &Vec<f64>))| {
-                let blocks = node.q.chunks_exact(node.q.len() / n);
-                let turned: f64 = hessian[row * n..][..n].iter().zip(blocks).map(|(second, q)| second * q[p]).sum();
-                gradient[row] * elements[e].row[0][p] + shown.force(e) * turned
-            };
-            node.gradients.iter().zip(&node.hessians).enumerate().map(of).sum::<f64>()
-        };
-        control.say_of_controller(run, told, &pull, [&node.q, &node.v], node.t)
-    }
-
-    /// What the terms of a controller do at the start (0) or at a row, at θ of the step at hand or between two.
-    fn push_at(&mut self, i: usize, theta: Option<f64>, equations: &Equations) {
-        if let (Some(control), Some(run)) = (&mut self.control, &equations.control) {
-            let node = &self.nodes[i];
-            control.push_at(i, theta, (run, false), [&node.q, &node.v]);
-        }
-    }
-
-    /// How inputs that follow from the state answer to it at node `i`: element, input, ∂u/∂q and ∂u/∂v.
-    pub(crate) fn input_slopes(&self, i: usize) -> impl Iterator<Item = (usize, usize, &[Vec<f64>; 2])> {
-        let slopes = self.control.iter().flat_map(move |control| control.input_slopes(i));
-        slopes.map(|(e, input, by_state, _)| (e, input, by_state))
-    }
-
-    /// Whether elements count for nothing in the equation of velocity `row` at node `i`, since its actuator takes their forces off.
-    pub(crate) fn relieves(&self, i: usize, row: usize) -> bool {
-        self.control.as_ref().is_some_and(|control| control.relieves(i, row))
     }
 
     /// The motion changes at node `i`, from 1, as where the step starts.
@@ -679,7 +540,7 @@ impl Variation {
             }
         }
         self.placed.iter().for_each(|(k, p, by)| sum[*p] += slopes.d_q[row * n + k] * by);
-        if let Some(control) = &self.control {
+        if let Some(control) = self.control.as_ref().filter(|_| !self.is_held(row)) {
             sum.iter_mut().enumerate().for_each(|(p, sum)| *sum -= control.pushed(i, row, p));
         }
     }
@@ -712,11 +573,8 @@ impl Variation {
     }
 
     /// Takes the accepted step into what changes of the laws' states; the bank has not taken it yet.
-    ///
-    /// # Errors
-    /// Where what control is about to leave has no derivative.
-    pub(crate) fn commit(&mut self, equations: &Equations) -> Result<(), SensitivityError> {
-        self.foresee(STAGES, equations)?;
+    pub(crate) fn commit(&mut self, equations: &Equations) {
+        self.foresee(STAGES, equations);
         let count = self.count();
         for (e, ElementVariation { law, stroke, rate, inputs, .. }) in self.elements.iter_mut().enumerate() {
             let told = of_step(count, [stroke, rate], inputs);
@@ -739,7 +597,6 @@ impl Variation {
         }
         self.nodes.swap(0, STAGES);
         self.take_sizes();
-        Ok(())
     }
 
     /// What outlasts the steps.
@@ -963,21 +820,6 @@ impl Variation {
     /// What the seeds of each parameter give in sum.
     pub(super) fn of_seeds(&self, of: impl Fn(&Seed) -> f64) -> Vec<f64> {
         self.by.parameters.iter().map(|parameter| parameter.seeds.iter().map(&of).sum()).collect()
-    }
-
-    /// What changes of the force that follows from the state, on velocity `k` at the row that was read.
-    fn steered(&self, k: usize, p: usize, snapshot: &Snapshot) -> f64 {
-        let Some(control) = &self.control else { return 0.0 };
-        let (count, n, row, node) = (self.count(), self.nv(), self.own_v[k], &self.nodes[ROW]);
-        let mut sum = control.torque(row, p, [&node.q, &node.v]);
-        if control.relieves(ROW, row) {
-            for (e, ([gradient, _], hessian)) in node.gradients.iter().zip(&node.hessians).enumerate() {
-                let turned = hessian[row * n..][..n].iter().enumerate();
-                let turned: f64 = turned.map(|(k, second)| second * node.q[k * count + p]).sum();
-                sum += gradient[row] * self.elements[e].row[0][p] + snapshot.force(e) * turned;
-            }
-        }
-        sum
     }
 
     /// What changes of the force of the actuator of velocity `k`.

@@ -112,7 +112,7 @@ impl Recorder {
     /// [`RunError::ControlChatter`].
     pub(crate) fn change_branches(&mut self, cx: Context) -> Result<(), RunError> {
         if let Some(variation) = &mut self.variation {
-            variation.foresee(0, &self.equations)?;
+            variation.foresee(0, &self.equations);
         }
         self.equations.change_branches(cx, false, self.settings.end)
     }
@@ -211,7 +211,7 @@ impl Recorder {
     /// [`RunError::ControlChatter`]; where the reference of a controller cannot be followed.
     pub(crate) fn commit(&mut self, cx: Context) -> Result<(), RunError> {
         if let Some(variation) = &mut self.variation {
-            variation.commit(&self.equations)?;
+            variation.commit(&self.equations);
         }
         let (actuators, joints) = self.work_until(1.0);
         let end = &self.evaluations[STAGES];

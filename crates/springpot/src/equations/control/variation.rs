@@ -2,19 +2,23 @@
 //!
 //! All is about the robot of [`Sensitivity::extended`], in blocks of one number for each parameter.
 
-use super::eye::{Eye, Read, Slopes};
-use super::mode::{Bound, Guard, Mode, Slew};
+mod leave;
+mod sampled;
+mod see;
+
+pub(crate) use leave::Jump;
+pub(crate) use sampled::{Held, Sides};
+
+use super::eye::{Read, Slopes};
+use super::mode::Mode;
 use super::term::{Integrand, TermVariation};
 use super::{ControlRun, Target};
 use crate::collocation::STAGES;
-use crate::control::{
-    Aim, At, ControllerVariation, Feedback, FeedbackSlope, RobotChange, Scratch, Sense, TorqueSlopes,
-};
-use crate::dynamics::{Kinematics, RneaDerivatives, point_jacobian, point_jacobian_rate};
+use crate::control::{Aim, ControllerVariation, Feedback, FeedbackSlope, Scratch, Sense, TorqueSlopes};
+use crate::dynamics::Kinematics;
 use crate::fractional::KernelError;
 use crate::model::Model;
 use crate::sensitivity::{Seed, Sensitivity, SensitivityError};
-use crate::signal::Jet;
 use crate::system::System;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -62,45 +66,7 @@ pub(crate) struct ControlVariation {
     wanted: Kinematics,
     aims: [Aim; 2],
     /// What branches of joints were left, and from where.
-    left: Vec<Left>,
-}
-
-/// What changes of what sampled laws said last.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub(crate) struct Held {
-    /// Of the torques, a block for each velocity of the run, or nothing.
-    pub(super) torques: Vec<f64>,
-    /// Of inputs: which, and a block.
-    pub(super) inputs: Vec<(usize, usize, Vec<f64>)>,
-}
-
-/// On which side of its limits a force of a sampled controller is: of its rate, and of itself.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(crate) struct Sides {
-    pub(super) rate: i8,
-    pub(super) force: i8,
-}
-
-/// A force that jumps at a time that parameters move.
-#[derive(Debug)]
-pub(crate) struct Jump {
-    /// δt*.
-    pub(crate) moved: Vec<f64>,
-    /// The column that says what jumps.
-    pub(crate) what: String,
-    /// The element whose input it is, where it is one.
-    pub(crate) element: Option<usize>,
-}
-
-/// A joint that was on another branch.
-#[derive(Debug)]
-struct Left {
-    joint: usize,
-    mode: Mode,
-    /// Of its force before the last limit.
-    shaped: Vec<f64>,
-    /// Of the time at which it was left.
-    moved: Vec<f64>,
+    left: Vec<leave::Left>,
 }
 
 /// A joint that the controller drives.
@@ -328,228 +294,6 @@ impl ControlVariation {
         (off(place, q), off(speed, v))
     }
 
-    /// Looks at node `i`: what follows from the state there, and how. `slopes` are those of the equations of motion, from which it is taken, as from
-    /// `explicit`, what changes of them where the motion stays; elements pull with `force`, whose second derivatives are `hessians`.
-    pub(crate) fn see(
-        &mut self,
-        i: usize,
-        run: &ControlRun,
-        at: Place,
-        (force, hessians): (&[f64], &[Vec<f64>]),
-        (slopes, explicit): (&mut RneaDerivatives, &mut [f64]),
-    ) {
-        let n = self.system.model.nv();
-        let node = &mut self.nodes[i];
-        for blocks in [&mut node.slopes, &mut node.wanted] {
-            blocks.d_q.fill(0.0);
-            blocks.d_v.fill(0.0);
-        }
-        node.explicit.fill(0.0);
-        node.wanted_explicit.fill(0.0);
-        node.relieved.fill(false);
-        self.steer(i, run, at);
-        self.feed_back(i, run, at);
-        let (count, node) = (self.count(), &mut self.nodes[i]);
-        for (&row, held) in self.own_v.iter().zip(self.held.torques.chunks_exact(count)) {
-            node.explicit[row * count..][..count].iter_mut().zip(held).for_each(|(sum, own)| *sum += own);
-        }
-        let node = &self.nodes[i];
-        slopes.d_q.iter_mut().zip(&node.slopes.d_q).for_each(|(sum, own)| *sum -= own);
-        slopes.d_v.iter_mut().zip(&node.slopes.d_v).for_each(|(sum, own)| *sum -= own);
-        explicit.iter_mut().zip(&node.explicit).for_each(|(sum, own)| *sum -= own);
-        for row in (0..n).filter(|row| node.relieved[*row]) {
-            for (force, hessian) in force.iter().zip(hessians) {
-                let lines = slopes.d_q[row * n..][..n].iter_mut().zip(&hessian[row * n..]);
-                lines.for_each(|(slope, second)| *slope -= force * second);
-            }
-        }
-    }
-
-    /// What the controller says at node `i`.
-    fn steer(&mut self, i: usize, run: &ControlRun, at: Place) {
-        let (Some(controlled), Some(law)) = (run.controlled(), &self.law) else { return };
-        let (model, count) = (&self.system.model, self.by.parameters.len());
-        let [own, aim] = &mut self.aims;
-        // Where a reference cannot be followed the run says so.
-        own.gripper = [[f64::NAN; 3]; 2];
-        let _ = controlled.reference.at_into(&self.run_model, None, at.t, &mut self.wanted, own);
-        for (&place, q) in self.own_q.iter().zip(&own.q) {
-            aim.q[place] = *q;
-        }
-        for (&k, (v, a)) in self.own_v.iter().zip(own.v.iter().zip(&own.a)) {
-            (aim.v[k], aim.a[k]) = (*v, *a);
-        }
-        aim.gripper = own.gripper;
-        let site = self.system.gripper.as_ref();
-        self.leads_gripper = !own.gripper[0][0].is_nan();
-        let follows = site.filter(|_| !self.leads_gripper);
-        let mut jacobians = [Vec::new(), Vec::new()];
-        if let Some(site) = follows {
-            self.wanted.update_velocity(model, &aim.q, &aim.v);
-            aim.gripper = [self.wanted.position(site).0, self.wanted.velocity(site).0];
-            jacobians = [point_jacobian(model, &self.wanted, site), point_jacobian_rate(model, &self.wanted, site)];
-        }
-        let [q, v, a] = at.motion;
-        let asked = At { model, gripper: site, t: at.t, q, v, kinematics: at.kinematics, aim };
-        let node = &mut self.nodes[i];
-        node.gripper = aim.gripper[0];
-        node.errors.clear();
-        node.errors.extend(self.joints.iter().map(|joint| asked.error(joint.row)));
-        law.slopes(&asked, &mut self.scratch, &mut node.wanted);
-        let n = model.nv();
-        let mut change = Aim { q: vec![0.0; model.nq()], v: vec![0.0; n], a: vec![0.0; n], gripper: [[0.0; 3]; 2] };
-        let mut tau = vec![0.0; n];
-        for (p, parameter) in self.by.parameters.iter().enumerate() {
-            for blocks in [&mut change.q, &mut change.v, &mut change.a] {
-                blocks.fill(0.0);
-            }
-            change.gripper = [[0.0; 3]; 2];
-            tau.fill(0.0);
-            let mut moved = vec![0.0; n];
-            let mut leads = false;
-            for seed in &parameter.seeds {
-                match seed {
-                    Seed::Reference { velocity, by } => {
-                        let (k, by) = (self.own_v[*velocity], by.at(at.t));
-                        if let Some(place) = model.coordinate_of(k) {
-                            change.q[place] += by.value;
-                        }
-                        moved[k] += by.value;
-                        change.v[k] += by.first;
-                        change.a[k] += by.second;
-                        leads = true;
-                    }
-                    Seed::ReferencePoint { axis, by } => {
-                        let by = by.at(at.t);
-                        change.gripper[0][*axis] += by.value;
-                        change.gripper[1][*axis] += by.first;
-                        leads = true;
-                    }
-                    Seed::Place { velocity, by } => {
-                        moved[*velocity] += by;
-                        leads = true;
-                    }
-                    Seed::Controller { number, by } => {
-                        let number = number.of_robot(&self.own_v);
-                        law.add_by_number(&number, *by, &asked, &mut self.scratch, &mut tau);
-                    }
-                    Seed::Inertia(robot) => {
-                        law.add_by_robot(&asked, RobotChange::Inertia(robot), &mut self.scratch, &mut tau);
-                    }
-                    Seed::Gravity(robot) => {
-                        law.add_by_robot(&asked, RobotChange::Gravity(robot), &mut self.scratch, &mut tau);
-                    }
-                    _ => {}
-                }
-            }
-            if leads {
-                if follows.is_some() {
-                    let [jacobian, rate] = jacobians.each_ref().map(|columns| columns.chunks_exact(n));
-                    for (axis, (jacobian, rate)) in jacobian.zip(rate).enumerate() {
-                        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-                        change.gripper[0][axis] = dot(jacobian, &moved);
-                        change.gripper[1][axis] = dot(jacobian, &change.v) + dot(rate, &moved);
-                    }
-                }
-                law.add_by_aim(&asked, &change, &mut self.scratch, &mut tau);
-            }
-            for (moves, change) in node.gripper_moves.iter_mut().zip(change.gripper[0]) {
-                moves[p] = change;
-            }
-            for (joint, [place, speed]) in self.joints.iter().zip(&mut node.aims) {
-                (place[p], speed[p]) = (moved[joint.row], change.v[joint.row]);
-            }
-            (0..n).for_each(|k| node.wanted_explicit[k * count + p] = tau[k]);
-        }
-        if run.joints.iter().any(|joint| joint.limit.torque.is_finite() || joint.limit.rate.is_finite()) {
-            // The aim goes on, but for accelerations that change.
-            tau.fill(0.0);
-            for k in 0..n {
-                if let Some(place) = model.coordinate_of(k) {
-                    change.q[place] = aim.v[k];
-                }
-            }
-            change.v.copy_from_slice(&aim.a);
-            change.a.fill(0.0);
-            change.gripper = [aim.gripper[1], [f64::NAN; 3]];
-            if follows.is_some() {
-                let rows = jacobians.each_ref().map(|columns| columns.chunks_exact(n));
-                let [jacobian, rate] = rows;
-                for (axis, (jacobian, rate)) in jacobian.zip(rate).enumerate() {
-                    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-                    change.gripper[1][axis] = dot(jacobian, &aim.a) + dot(rate, &aim.v);
-                }
-            }
-            law.add_by_aim(&asked, &change, &mut self.scratch, &mut tau);
-            let is_known = !run.controlled().is_some_and(|controlled| controlled.law.follows_accelerations());
-            for (drift, joint) in node.drifts.iter_mut().zip(&self.joints) {
-                let line = joint.row * n..(joint.row + 1) * n;
-                let along = |slopes: &[f64], by: &[f64]| -> f64 {
-                    slopes[line.clone()].iter().zip(by).map(|(slope, by)| slope * by).sum()
-                };
-                let by_state = along(&node.wanted.d_q, v) + along(&node.wanted.d_v, a);
-                *drift = if is_known { tau[joint.row] + by_state } else { f64::NAN };
-            }
-        }
-        let acting = self.joints.iter().zip(&run.joints).filter(|_| run.is_continuous);
-        for (joint, state) in acting {
-            let (row, Mode { bound, slew, .. }) = (joint.row, state.mode);
-            let blocks = row * count..(row + 1) * count;
-            if state.mode.follows() {
-                node.slopes.d_q[row * n..][..n].copy_from_slice(&node.wanted.d_q[row * n..][..n]);
-                node.slopes.d_v[row * n..][..n].copy_from_slice(&node.wanted.d_v[row * n..][..n]);
-                node.explicit[blocks.clone()].copy_from_slice(&node.wanted_explicit[blocks]);
-                node.relieved[row] = run.compensates;
-                continue;
-            }
-            for (p, explicit) in node.explicit[blocks].iter_mut().enumerate() {
-                *explicit = match (bound, slew) {
-                    (Bound::At(sign), _) => f64::from(sign) * joint.limit[p],
-                    (Bound::Free, Slew::Goes { sign, since, .. }) => {
-                        joint.from[p] + f64::from(sign) * (at.t - since) * joint.rate_limit[p]
-                    }
-                    (Bound::Free, Slew::Follows) => 0.0,
-                };
-            }
-        }
-    }
-
-    /// What expressions say at node `i`.
-    fn feed_back(&mut self, i: usize, run: &ControlRun, at: Place) {
-        let (n, count) = (self.system.model.nv(), self.by.parameters.len());
-        let [q, v, _] = at.motion;
-        let read = |e: usize| at.readings[e];
-        let eye = Eye { system: &self.system, t: at.t, q, v, kinematics: at.kinematics, element: &read };
-        let node = &mut self.nodes[i];
-        node.inputs.clear();
-        let mut slopes = Vec::new();
-        for (law, state) in self.laws.iter().zip(&run.laws) {
-            let seen: Vec<f64> = law.senses.iter().map(|sense| eye.value(*sense)).collect();
-            law.law.slopes_on(state.branch, at.t, &seen, &mut slopes);
-            let (mut by_state, mut own) = ([vec![0.0; n], vec![0.0; n]], vec![0.0; count]);
-            for (sense, slope) in law.senses.iter().zip(&slopes).filter(|(_, slope)| **slope != 0.0) {
-                add_sense(&eye, *sense, *slope, at, (&mut by_state, &mut own));
-            }
-            for (own, slopes) in own.iter_mut().zip(&law.own) {
-                *own += slopes.iter().map(|slope| slope.value_on(state.branch, at.t, &seen)).sum::<f64>();
-            }
-            match law.target {
-                Target::Torque(row) => {
-                    let [by_q, by_v] = by_state;
-                    let lines = [(&mut node.slopes.d_q, by_q), (&mut node.slopes.d_v, by_v)];
-                    for (matrix, line) in lines {
-                        matrix[row * n..][..n].iter_mut().zip(line).for_each(|(sum, own)| *sum += own);
-                    }
-                    node.explicit[row * count..][..count].iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
-                }
-                Target::Input(e, input) => node.inputs.push((e, input, by_state, own)),
-            }
-        }
-        for (e, input, held) in &self.held.inputs {
-            node.inputs.push((*e, *input, [vec![0.0; n], vec![0.0; n]], held.clone()));
-        }
-    }
-
     /// Of every expression for an input at node `i`: ∂u/∂q and ∂u/∂v, and what changes of u where the motion stays.
     pub(crate) fn input_slopes(&self, i: usize) -> impl Iterator<Item = (usize, usize, &Slopes, &[f64])> {
         self.nodes[i].inputs.iter().map(|(e, input, by_state, own)| (*e, *input, by_state, &own[..]))
@@ -570,21 +314,6 @@ impl ControlVariation {
                 motion.into_iter().enumerate().for_each(|(i, motion)| self.slide(i, joint, run, motion));
             }
         }
-    }
-
-    /// The integral of a joint keeps its force at the limit at node `i`, whatever else changes of it.
-    fn slide(&mut self, i: usize, joint: usize, run: &ControlRun, [q, v]: [&[f64]; 2]) {
-        let (Some(m), Bound::At(sign)) = (run.joints[joint].integral, run.joints[joint].mode.bound) else { return };
-        let (n, count, node, own) = (self.system.model.nv(), self.count(), &self.nodes[i], &self.joints[joint]);
-        let along = |slopes: &[f64], blocks: &[f64], p: usize| -> f64 {
-            slopes[own.row * n..][..n].iter().enumerate().map(|(k, slope)| slope * blocks[k * count + p]).sum()
-        };
-        let others = |p: usize| {
-            let still = node.wanted_explicit[own.row * count + p];
-            still + along(&node.wanted.d_q, q, p) + along(&node.wanted.d_v, v, p)
-        };
-        let wanted = (0..count).map(|p| f64::from(sign) * own.limit[p] - others(p)).collect::<Vec<_>>();
-        self.terms[m].slide(i, &run.terms[m], &wanted);
     }
 
     /// The joint that term `m` belongs to, and what it does there.
@@ -679,244 +408,6 @@ impl ControlVariation {
         self.nodes.swap(0, STAGES);
     }
 
-    /// Looks at what `run` is about to leave at node `i`, where the motion changes by these blocks: by how much parameters move the times of jumps of
-    /// forces, and what jumps.
-    pub(crate) fn foresee(&mut self, i: usize, run: &ControlRun, at: Place, motion: [&[f64]; 2]) -> Vec<Jump> {
-        let mut found = Vec::new();
-        if i > 0 {
-            self.push(i, run, true);
-        } else {
-            self.push_at(i, None, (run, true), motion);
-        }
-        for &guard in run.leaves() {
-            match guard {
-                Guard::Branch { law, bit } if self.laws[law].law.expression().jumps_at(bit) => {
-                    let target = self.laws[law].target;
-                    let what = target.column(&self.system);
-                    let element = if let Target::Input(e, _) = target { Some(e) } else { None };
-                    let moved = self.moved((law, bit), run, at, motion);
-                    found.push(Jump { moved, what, element });
-                }
-                Guard::Branch { .. } => {}
-                Guard::Reaches { joint, .. }
-                | Guard::Returns { joint }
-                | Guard::Turns { joint }
-                | Guard::Empties { joint }
-                | Guard::Fills { joint }
-                | Guard::Outruns { joint, .. }
-                | Guard::Catches { joint } => {
-                    let mode = run.joints[joint].mode;
-                    let shaped = self.shaped(i, joint, mode, at.t, motion);
-                    let own = &self.joints[joint];
-                    let drift = self.drift(i, joint, run);
-                    let moved = match (guard, mode.bound, mode.slew) {
-                        (Guard::Reaches { sign, .. }, ..) | (Guard::Returns { .. }, Bound::At(sign), _) => {
-                            let over = shaped.iter().zip(&own.limit);
-                            over.map(|(shaped, limit)| (f64::from(sign) * limit - shaped) / drift).collect()
-                        }
-                        (Guard::Catches { .. }, _, Slew::Goes { sign, .. }) => {
-                            let follows = Mode { slew: Slew::Follows, ..mode };
-                            let wanted = self.shaped(i, joint, follows, at.t, motion);
-                            let rate = f64::from(sign) * run.joints[joint].limit.rate;
-                            let off = shaped.iter().zip(&wanted);
-                            off.map(|(shaped, wanted)| (shaped - wanted) / (drift - rate)).collect()
-                        }
-                        _ => vec![0.0; shaped.len()],
-                    };
-                    self.left.push(Left { joint, mode, shaped, moved });
-                }
-            }
-        }
-        found
-    }
-
-    /// By how much parameters move the time at which a kink of an expression is passed: δt* = −δγ/γ̇.
-    fn moved(&self, (law, bit): (usize, u32), run: &ControlRun, at: Place, motion: [&[f64]; 2]) -> Vec<f64> {
-        let (count, own, branch) = (self.count(), &self.laws[law], run.laws[law].branch);
-        let [q, v, a] = at.motion;
-        let read = |e: usize| at.readings[e];
-        let eye = Eye { system: &self.system, t: at.t, q, v, kinematics: at.kinematics, element: &read };
-        let jets: Vec<Jet> = own.senses.iter().map(|sense| eye.jet(*sense, a)).collect();
-        let seen: Vec<f64> = jets.iter().map(|jet| jet.value).collect();
-        let guard = |time: Jet, jets: &[Jet]| own.law.expression().guard_jet(branch, bit, time, jets);
-        let rate = guard(Jet::time(at.t), &jets).map_or(0.0, |jet| jet.first);
-        let (mut by_state, mut change) = ([vec![0.0; v.len()], vec![0.0; v.len()]], vec![0.0; count]);
-        for (k, sense) in own.senses.iter().enumerate() {
-            let alone = seen.iter().enumerate().map(|(j, value)| Jet {
-                value: *value,
-                first: if j == k { 1.0 } else { 0.0 },
-                second: 0.0,
-            });
-            let alone: Vec<Jet> = alone.collect();
-            let slope = guard(Jet::constant(at.t), &alone).map_or(0.0, |jet| jet.first);
-            add_sense(&eye, *sense, slope, at, (&mut by_state, &mut change));
-        }
-        for (p, change) in change.iter_mut().enumerate() {
-            *change += own.own[p].iter().map(|slope| slope.guard_on(branch, bit, at.t, &seen)).sum::<f64>();
-            for (slopes, blocks) in by_state.iter().zip(motion) {
-                *change += slopes.iter().enumerate().map(|(k, slope)| slope * blocks[k * count + p]).sum::<f64>();
-            }
-            *change /= -rate;
-        }
-        change
-    }
-
-    /// How fast the force that is wanted of a joint changes at node `i`: at the end of the step, or at its start.
-    fn drift(&self, i: usize, joint: usize, run: &ControlRun) -> f64 {
-        let mut sum = self.nodes[i].drifts[joint];
-        for term in run.terms.iter().filter(|term| term.law.velocity == self.joints[joint].velocity) {
-            if term.law.order > -1.0 {
-                sum = f64::NAN;
-            }
-            let runs = run.joints[joint].mode.integrand == Integrand::Runs;
-            sum += if runs { term.law.gain * self.nodes[i].errors[joint][0] } else { 0.0 };
-        }
-        if sum.is_finite() { sum } else { run.drift(joint, if i == 0 { 0.0 } else { 1.0 }) }
-    }
-
-    /// What changes of the force of a joint before its last limit at node `i`, on a branch.
-    fn shaped(&self, i: usize, joint: usize, mode: Mode, t: f64, [q, v]: [&[f64]; 2]) -> Vec<f64> {
-        let (n, count, node, own) = (self.system.model.nv(), self.count(), &self.nodes[i], &self.joints[joint]);
-        let along = |slopes: &[f64], blocks: &[f64], p: usize| -> f64 {
-            slopes[own.row * n..][..n].iter().enumerate().map(|(k, slope)| slope * blocks[k * count + p]).sum()
-        };
-        let of = |p: usize| match mode.slew {
-            Slew::Goes { sign, since, .. } => own.from[p] + f64::from(sign) * (t - since) * own.rate_limit[p],
-            Slew::Follows => {
-                let still = node.wanted_explicit[own.row * count + p] + node.pushed[own.row * count + p];
-                still + along(&node.wanted.d_q, q, p) + along(&node.wanted.d_v, v, p)
-            }
-        };
-        (0..count).map(of).collect()
-    }
-
-    /// Goes onto the branches that `run` is on at t, from those that were left.
-    ///
-    /// # Errors
-    /// Where that has no derivative.
-    pub(crate) fn settle(&mut self, run: &ControlRun, t: f64, motion: [&[f64]; 2]) -> Result<(), SensitivityError> {
-        let unknown = |what: &str| Err(SensitivityError::Unknown { what: format!("{what}, at t = {t} s") });
-        for Left { joint, mode, shaped, moved } in std::mem::take(&mut self.left) {
-            let (now, error) = (run.joints[joint].mode, self.nodes[0].errors[joint][0]);
-            if let Some(m) = run.joints[joint].integral.filter(|_| now.integrand != mode.integrand) {
-                let own = run.terms.iter().filter(|term| term.law.velocity == run.joints[joint].velocity);
-                if own.count() > 1 && [mode, now].iter().any(|mode| mode.integrand == Integrand::Slides) {
-                    return unknown("a fractional derivative of a controller beside an integral that keeps its limit");
-                }
-                if run.terms[m].law.order > -1.0 {
-                    return unknown("a fractional integral of a controller that stops at its limit");
-                }
-                let taken = |mode: Mode| if mode.integrand == Integrand::Runs { error } else { 0.0 };
-                match [mode.integrand, now.integrand] {
-                    [_, Integrand::Slides] => self.slide(0, joint, run, motion),
-                    [Integrand::Slides, _] => {}
-                    _ => self.terms[m].jump(taken(mode) - taken(now), &moved),
-                }
-            }
-            match (mode.slew, now.slew) {
-                (Slew::Follows, Slew::Goes { .. }) => self.joints[joint].from = shaped,
-                (Slew::Goes { sign: before, .. }, Slew::Goes { sign, .. }) if mode.slew != now.slew => {
-                    let turn = f64::from(before - sign) * run.joints[joint].limit.rate;
-                    let turned = shaped.iter().zip(&moved).map(|(shaped, moved)| shaped + turn * moved);
-                    self.joints[joint].from = turned.collect();
-                }
-                _ => {}
-            }
-            self.joints[joint].mode = now;
-        }
-        for joint in 0..self.joints.len() {
-            let (now, before) = (run.joints[joint].mode, self.joints[joint].mode);
-            if now.slew != before.slew && now.slew != Slew::Follows {
-                // The reference jumped.
-                self.joints[joint].from = self.shaped(0, joint, before, t, motion);
-            }
-            self.joints[joint].mode = now;
-        }
-        Ok(())
-    }
-
-    /// From now on what sampled laws said changes so.
-    pub(crate) fn hold(&mut self, held: &Held) {
-        self.held.clone_from(held);
-    }
-
-    /// What changes of what the sampled expression for a target of the run says of the row that was seen, where elements pull with forces that change
-    /// by `forces`, and the motion changes by these blocks of q, v and a.
-    pub(crate) fn say(
-        &self,
-        target: Target,
-        at: Place,
-        forces: &dyn Fn(usize) -> (f64, Vec<f64>),
-        [dq, dv, da]: [&[f64]; 3],
-    ) -> Vec<f64> {
-        let count = self.count();
-        let target = target.of_robot(&self.own_v);
-        let Some(law) = self.sampled.iter().find(|law| law.target == target) else { return vec![0.0; count] };
-        let [q, v, a] = at.motion;
-        let read = |e: usize| at.readings[e];
-        let eye = Eye { system: &self.system, t: at.t, q, v, kinematics: at.kinematics, element: &read };
-        let seen: Vec<f64> = law
-            .senses
-            .iter()
-            .map(|sense| match *sense {
-                Sense::Acceleration(k) => a[k],
-                Sense::Force(e) => forces(e).0,
-                sense => eye.value(sense),
-            })
-            .collect();
-        let jets: Vec<Jet> = seen.iter().map(|value| Jet::constant(*value)).collect();
-        let branch = law.law.expression().branch(at.t, &jets);
-        let (mut slopes, mut said) = (Vec::new(), vec![0.0; count]);
-        law.law.slopes_on(branch, at.t, &seen, &mut slopes);
-        let mut by_state = [vec![0.0; v.len()], vec![0.0; v.len()]];
-        let mut by_forces = vec![0.0; v.len()];
-        for (sense, slope) in law.senses.iter().zip(&slopes).filter(|(_, slope)| **slope != 0.0) {
-            match *sense {
-                Sense::Acceleration(k) => by_forces[k] += slope,
-                Sense::Force(e) => said.iter_mut().zip(forces(e).1).for_each(|(sum, own)| *sum += slope * own),
-                sense => add_sense(&eye, sense, *slope, at, (&mut by_state, &mut said)),
-            }
-        }
-        let [by_q, by_v] = &by_state;
-        for (p, said) in said.iter_mut().enumerate() {
-            for (slopes, blocks) in [(by_q, dq), (by_v, dv), (&by_forces, da)] {
-                *said += slopes.iter().enumerate().map(|(k, slope)| slope * blocks[k * count + p]).sum::<f64>();
-            }
-            *said += law.own[p].iter().map(|slope| slope.value_on(branch, at.t, &seen)).sum::<f64>();
-        }
-        said
-    }
-
-    /// The same of a sampled controller, whose forces are on these sides of their limits, by velocity of the run; `before` is what changed of what it
-    /// said before, ahead of its last limit, and `pull` what changes of Σ F·∂y/∂q of a velocity of the extended robot. Gives what changes ahead of
-    /// the last limit and behind it.
-    pub(crate) fn say_of_controller(
-        &mut self,
-        run: &ControlRun,
-        (sides, before, period): (&[Sides], &[f64], f64),
-        pull: &dyn Fn(usize, usize) -> f64,
-        motion: [&[f64]; 2],
-        t: f64,
-    ) -> [Vec<f64>; 2] {
-        let count = self.count();
-        self.push_at(ROW, None, (run, true), motion);
-        let mut said = [vec![0.0; sides.len() * count], vec![0.0; sides.len() * count]];
-        for (joint, own) in self.joints.iter().enumerate() {
-            let Sides { rate, force } = sides[own.velocity];
-            let wanted = self.shaped(ROW, joint, Mode::default(), t, motion);
-            for (p, wanted) in wanted.into_iter().enumerate() {
-                let place = own.velocity * count + p;
-                let shaped = match rate {
-                    0 => wanted + if run.compensates { pull(own.row, p) } else { 0.0 },
-                    sign => before[place] + f64::from(sign) * period * own.rate_limit[p],
-                };
-                let behind = if force == 0 { shaped } else { f64::from(force) * own.limit[p] };
-                (said[0][place], said[1][place]) = (shaped, behind);
-            }
-        }
-        said
-    }
-
     /// What outlasts the steps.
     pub(crate) fn save(&self) -> ControlVariationState {
         ControlVariationState {
@@ -963,15 +454,5 @@ impl Target {
             Self::Torque(k) => Self::Torque(velocities[k]),
             input @ Self::Input(..) => input,
         }
-    }
-}
-
-/// Adds what a sense changes of an expression whose slope by it is `slope`: ∂/∂q and ∂/∂v, and where the motion stays.
-fn add_sense(eye: &Eye, sense: Sense, slope: f64, at: Place, (by_state, own): (&mut Slopes, &mut [f64])) {
-    for (sum, of_sense) in by_state.iter_mut().zip(eye.slopes(sense)) {
-        sum.iter_mut().zip(of_sense).for_each(|(sum, own)| *sum += slope * own);
-    }
-    if let Sense::Stroke(e) = sense {
-        own.iter_mut().zip((at.rests)(e)).for_each(|(sum, rest)| *sum += slope * rest);
     }
 }

@@ -209,7 +209,7 @@ impl RadauStep {
         let through = |m: usize, j: usize| (h * h * A_SQUARED[m][j], h * A[m][j]);
         for (velocity, response) in equations.term_responses() {
             let row = variation.of_run(&[velocity])[0];
-            let Some(r) = free.iter().position(|k| *k == row) else { continue };
+            let Some(r) = free.iter().position(|k| *k == row && !variation.is_held(row)) else { continue };
             for (j, m) in (0..STAGES).flat_map(|j| (0..STAGES).map(move |m| (j, m))) {
                 let (twice, once) = through(m, j);
                 matrix[(i * own + r) * size + j * own + r] +=

@@ -3,12 +3,12 @@
 //! Where accelerations jump from a⁻ to a⁺ at a time t* that comes later by δt*, the changes at fixed t jump by δv⁺ = δv⁻ + (a⁻ − a⁺) δt*; places,
 //! strokes and memories go on as they are (Galán, Feehery & Barton, Applied Numerical Mathematics 31, 1999).
 
-use super::assembly::Equations;
-use super::evaluate::Evaluation;
-use super::node::Node;
-use super::variation::Variation;
+use super::Variation;
 use crate::collocation::STAGES;
 use crate::dual::Dual;
+use crate::equations::assembly::Equations;
+use crate::equations::evaluate::Evaluation;
+use crate::equations::node::Node;
 use crate::law::{InputValue, Network, Point};
 use crate::sensitivity::{Lost, Seed, SensitivityError, Switched};
 use crate::system::{Action, Event, Setting};
