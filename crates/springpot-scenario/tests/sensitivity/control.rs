@@ -138,8 +138,8 @@ fn a_spring_at_the_gripper() {
         } else {
             [("motion.controller.reference.y", 2e-3), ("constants.f", 2e-3)]
         };
-        let more = [("robot.gripper.point.0", 1e-3)];
-        compare(&text, &COLUMNS, &with_plant(&[&own[..], &of_reference, &more].concat()));
+        let more = [("robot.gripper.point.0", 1e-3), ("element.strut.to.point.1", 1e-3)];
+        compare(&text, &COLUMNS, &with_some(&[&own[..], &of_reference, &more].concat()));
     }
 }
 
