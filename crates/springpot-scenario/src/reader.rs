@@ -76,6 +76,11 @@ impl<'a> Context<'a> {
         self.refusals.borrow().len() >= MAX_REFUSALS
     }
 
+    /// Whether nothing was noted so far.
+    pub(crate) fn is_clean(&self) -> bool {
+        self.refusals.borrow().is_empty()
+    }
+
     /// Itself, if nothing was noted so far.
     pub(crate) fn going_on<T>(self, read: Read<T>) -> Result<Self, Refusals> {
         if read.is_ok() && self.refusals.borrow().is_empty() {

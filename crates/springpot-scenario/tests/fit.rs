@@ -47,7 +47,7 @@ columns = { "q.x" = "x" }
 fn files(folder: &Path) {
     let put = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
     put("dma.csv", "f,E1,E2,T\n0.1,110,20,300\n1,130,50,300\n10,,100,300\n100,300,200,300\n");
-    put("x.csv", "t,x\n0,0.1\n0.5,0\n1,-0.05\n");
+    put("x.csv", "t,x\n0,0.1\n0.2,0.07\n0.5,0\n0.7,-0.03\n1,-0.05\n");
     put("late.csv", "t,x\n0,0.1\n0.5,0\n1.5,-0.05\n");
     put("back.csv", "t,x\n0,0.1\n0.5,0\n0.5,-0.05\n");
     put("nan.csv", "t,x\n0,0.1\n0.5,nan\n1,-0.05\n");
@@ -70,20 +70,20 @@ fn what_is_wrong_is_refused_where_it_stands() {
         (PAD, "element = \"pad\"\n", "", "a.toml:8:1: data \"dma\" has no `element`"),
         (PAD, "element = \"pad\"", "element = \"pod\"", "a.toml:11:11: \"pod\" is no element"),
         (PAD, "\"dma.csv\"", "\"no.csv\"", "a.toml:12:7: `csv` of data \"dma\" cannot be read"),
-        (PAD, "loss = \"E2\"", "loss = \"E3\"", "a.toml:13:55: `loss` of `columns` of data \"dma\" is \"E3\""),
+        (PAD, "loss = \"E2\"", "loss = \"E3\"", "a.toml:13:53: `loss` of `columns` of data \"dma\" is \"E3\""),
         (PAD, ", loss = \"E2\"", "", "a.toml:13:11: `columns` of data \"dma\" has no `loss`"),
-        (PAD, "loss = \"E2\"", "lost = \"E2\"", "a.toml:13:55: `columns` of data \"dma\" has no \"lost\""),
+        (PAD, "loss = \"E2\"", "lost = \"E2\"", "a.toml:13:53: `columns` of data \"dma\" has no \"lost\""),
         (
             PAD,
             "loss = \"E2\"",
             "loss = \"E2\", T = \"T\"",
-            "a.toml:13:65: `T` of `columns` of data \"dma\" the element",
+            "a.toml:13:63: `T` of `columns` of data \"dma\" says nothing",
         ),
         (
             PAD,
             "loss = \"E2\"",
             "loss = { column = \"E2\", unit = \"mm\" }",
-            "a.toml:13:79: `unit` of `loss` of `columns` of data \"dma\" has the unit \"mm\"",
+            "a.toml:13:77: `unit` of `loss` of `columns` of data \"dma\" has the unit \"mm\"",
         ),
         (
             PAD,
@@ -106,7 +106,7 @@ fn what_is_wrong_is_refused_where_it_stands() {
             PAD,
             "path = \"element.pad.alpha\"",
             "path = \"element.pad.alpha\"\nbounds = [0.6, 0.9]",
-            "a.toml:8:1: `bounds` of parameter \"alpha\"",
+            "a.toml:8:10: `bounds` of parameter \"alpha\"",
         ),
         (
             PAD,
@@ -130,17 +130,17 @@ fn what_is_wrong_is_refused_where_it_stands() {
             "[[sweep]]\nparameter = \"element.pad.k\"\nvalues = [1, 2]\n[[data]]",
             "a.toml:8:1: a fit has no sweeps",
         ),
-        (SLIDER, "\"q.x\" = \"x\"", "\"q.y\" = \"x\"", "a.toml:20:21: `columns` of data \"data-1\" names \"q.y\""),
-        (SLIDER, "\"q.x\" = \"x\"", "\"pad.dissipated\" = \"x\"", "a.toml:20:32: \"pad.dissipated\" cannot be fitted"),
+        (SLIDER, "\"q.x\" = \"x\"", "\"q.y\" = \"x\"", "a.toml:21:21: `columns` of data \"data-1\" names \"q.y\""),
+        (SLIDER, "\"q.x\" = \"x\"", "\"pad.dissipated\" = \"x\"", "a.toml:21:32: \"pad.dissipated\" cannot be fitted"),
         (
             SLIDER,
             "x.csv",
             "late.csv",
-            "a.toml:19:7: `csv` of data \"data-1\" has t = 1.5 s on line 4, but the run goes from 0 s to 1 s",
+            "a.toml:20:7: `csv` of data \"data-1\" has t = 1.5 s on line 4, but the run goes from 0 s to 1 s",
         ),
-        (SLIDER, "x.csv", "back.csv", "a.toml:19:7: `csv` of data \"data-1\" has t = 0.5 s on line 4 behind 0.5 s"),
-        (SLIDER, "x.csv", "nan.csv", "a.toml:19:7: `csv` of data \"data-1\" cannot be read"),
-        (SLIDER, "x.csv", "none.csv", "a.toml:19:7: `csv` of data \"data-1\" has no rows"),
+        (SLIDER, "x.csv", "back.csv", "a.toml:20:7: `csv` of data \"data-1\" has t = 0.5 s on line 4 behind 0.5 s"),
+        (SLIDER, "x.csv", "nan.csv", "a.toml:20:7: `csv` of data \"data-1\" cannot be read"),
+        (SLIDER, "x.csv", "none.csv", "a.toml:20:7: `csv` of data \"data-1\" has no rows"),
     ];
     let mut wrong = Vec::new();
     for (text, old, new, said) in cases {

@@ -1,6 +1,6 @@
 //! Columns of measured numbers, in SI.
 
-use crate::csv::{CsvProblem, CsvRows, MAX_ROWS, bracket};
+use crate::csv::{CsvError, CsvProblem, CsvRows, MAX_ROWS, bracket};
 use crate::keys::DATA_COLUMN;
 use crate::reader::{Field, Read, Refused, Table};
 use crate::text::document::{Value, shorten};
@@ -73,7 +73,8 @@ impl Numbers {
                 }
                 _ => None,
             };
-            csv.refuse(RefusalKind::File, format!("cannot be read: {}: {problem}", path.display()), help)
+            let error = CsvError { file: path.to_owned(), problem };
+            csv.refuse(RefusalKind::File, format!("cannot be read: {error}"), help)
         };
         let io = |source| unreadable(CsvProblem::Unreadable { source });
         if !std::fs::metadata(path).map_err(io)?.is_file() {

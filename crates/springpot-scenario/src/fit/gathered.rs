@@ -221,6 +221,10 @@ fn one(ctx: &Context<'_>, root: &Table<'_>, k: usize, global: &[By]) -> Read<(Ga
         None => return Err(written.table.missing("element", "element = \"NAME\"")),
     };
     inner.warnings().into_iter().for_each(|remark| ctx.warn(remark));
+    // What the record itself refuses is noted where it was opened.
+    if read.is_err() && inner.is_clean() {
+        return Err(Refused);
+    }
     let (mut gathered, offsets, delays) = match inner.finish(read) {
         Ok(gathered) => {
             let offsets = written.named("offset", &gathered.data.columns)?;

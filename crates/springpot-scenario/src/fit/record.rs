@@ -171,7 +171,7 @@ impl<'a> Record<'a> {
         let names =
             |fixed: &[&'static str]| -> Vec<&str> { fixed.iter().copied().chain(own.iter().copied()).collect() };
         if let Some(temperature) = self.get(TEMPERATURE).filter(|_| !own.contains(&TEMPERATURE)) {
-            let message = "the element has neither `shift` nor an input T: no temperature changes it";
+            let message = "says nothing: the element has neither `shift` nor an input T";
             let help = Some("write shift = { kind = \"wlf\", C1 = …, C2 = …, T_ref = … } into the element".to_owned());
             return Err(temperature.field.refuse(RefusalKind::Rule, message, help));
         }
@@ -340,7 +340,10 @@ impl<'a> Record<'a> {
             return Err(csv.refuse(RefusalKind::OutOfRange, message, help));
         }
         if plan.at.is_empty() {
-            let message = format!("has no rows: {} of {} lack a cell", plan.skipped, plan.skipped);
+            let message = match plan.skipped {
+                0 => "has no rows".to_owned(),
+                skipped => format!("has no row with all cells: {skipped} lack one"),
+            };
             return Err(csv.refuse(RefusalKind::Missing, message, None));
         }
         Ok(plan)

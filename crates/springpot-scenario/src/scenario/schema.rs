@@ -8,6 +8,7 @@ mod rules;
 mod shapes;
 
 use super::root::SCENARIO;
+use crate::keys::{CREEP, DMA, RELAXATION, STROKE};
 use serde_json::{Value, json};
 use springpot::law::Catalog;
 
@@ -23,11 +24,15 @@ use springpot::law::Catalog;
 /// ```
 pub fn json_schema(catalog: &Catalog) -> Value {
     let mut schema = shapes::object(SCENARIO.words, &SCENARIO, catalog);
+    // Measurements of elements alone take neither robot nor motion.
+    let of_element =
+        json!({ "required": ["kind"], "properties": { "kind": { "enum": [STROKE, DMA, RELAXATION, CREEP] } } });
+    let of_elements = json!({ "required": ["data"], "properties": { "data": { "items": of_element } } });
     let rest = json!({
         "$schema": "http://json-schema.org/draft-07/schema#",
         "title": "Springpot scenario",
         "definitions": shapes::definitions(catalog),
-        "if": { "not": { "required": ["sweep"] } },
+        "if": { "not": { "anyOf": [{ "required": ["sweep"] }, of_elements] } },
         "then": required::required(catalog),
     });
     if let (Value::Object(schema), Value::Object(rest)) = (&mut schema, rest) {
