@@ -117,6 +117,26 @@ fn moduli_of_others_to_the_exact_optimum() {
     assert!((number(&again["cost"]) / number(&answer["cost"]) - 1.0).abs() < 1e-11);
 }
 
+/// Two stiffnesses that follow from one constant, and what is known of alpha beforehand.
+#[test]
+fn constants_and_priors() {
+    let text = "[constants]\nK = \"1 kN/m\"\n[[element]]\nname = \"pad\"\nlaw = \"fractional-kelvin-voigt\"\n\
+                parameters = { k = { expression = \"0.1*K\", unit = \"N/m\" }, c = 20, alpha = 0.5 }\n\
+                [[parameter]]\npath = \"constants.K\"\nbounds = [1, 1e5]\n[[parameter]]\npath = \"element.pad.c\"\n\
+                [[parameter]]\nname = \"alpha\"\npath = \"element.pad.alpha\"\nprior = { mean = 0.32, sd = 1e-4 }\n";
+    let place = place(&format!("{text}{DMA}relative_sd = 0.01\n"));
+    place.write("dma.csv", moduli(50.0, 60.0, 0.3, 0.01, 4));
+    place.done(&["fit", "pad.toml"]);
+    let answer = record(&place, "results/pad");
+    let ((stiffness, sd), (alpha, _)) = (found(&answer, "constants.K"), found(&answer, "alpha"));
+    // The prior holds alpha, and the spring makes up for it.
+    assert!(
+        (alpha - 0.32).abs() < 5e-3 && (stiffness - 500.0).abs() < 100.0 && sd < 10.0,
+        "{alpha} {stiffness} ± {sd}"
+    );
+    assert!(place.read("results/pad/fitted.toml").contains(&format!("K = \"{stiffness:?} N/m\"")));
+}
+
 #[test]
 fn what_is_not_determined_is_said() {
     let text = pad(

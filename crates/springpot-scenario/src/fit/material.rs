@@ -263,9 +263,9 @@ impl Material {
                     };
                     own[k] += match slope? {
                         Slope::Number(by) => by,
-                        Slope::Signal { .. } | Slope::Feedback(_) => {
-                            return Err(format!("constants.{name} moves a function of time"));
-                        }
+                        // A number of a law names no time.
+                        Slope::Signal { by, .. } => by.at(0.0).value,
+                        Slope::Feedback(_) => return Err(format!("constants.{name} moves what follows from the state")),
                     };
                 }
                 Ok(Turned::Law(own))
