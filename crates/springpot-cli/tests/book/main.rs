@@ -42,6 +42,7 @@ pages! {
     joints: "how-to/joints.md";
     own_material: "how-to/own-material.md";
     master: "how-to/master.md";
+    how_to_fit: "how-to/fit.md";
     own_law: "how-to/own-law.md";
     own_controller: "how-to/own-controller.md";
     look: "how-to/look.md";
@@ -66,6 +67,7 @@ pages! {
     scenario_time: "scenario/time.md";
     scenario_sweep: "scenario/sweep.md";
     scenario_sensitivity: "scenario/sensitivity.md";
+    scenario_fit: "scenario/fit.md";
     scenario_figures: "scenario/figures.md";
     scenario_results: "scenario/results.md";
     keys: "reference/keys.md";
