@@ -84,7 +84,8 @@ class Fit:
         covariance = self.covariance
         with np.errstate(divide="ignore", invalid="ignore"):
             sd = np.sqrt(np.diag(covariance))
-            return covariance / np.outer(sd, sd)
+            correlation: NDArray[np.float64] = covariance / np.outer(sd, sd)
+        return correlation
 
     @property
     def residuals(self) -> dict[str, dict[str, NDArray[np.float64]]]:
@@ -254,7 +255,7 @@ def _files(data: Records | None) -> Iterator[dict[str, str]]:
         yield {}
         return
     with tempfile.TemporaryDirectory() as folder:
-        paths = {}
+        paths: dict[str, str] = {}
         for name, table in data.items():
             columns = {str(key): np.asarray(table[key], dtype=np.float64) for key in table}
             file = pathlib.Path(folder, f"{len(paths)}.csv")
