@@ -358,7 +358,7 @@ fn a_force_along_a_stroke_that_is_late() {
     let exact = [("k", 60.0), ("c", 9.0), ("alpha", 0.4), ("loops.offset.force", 0.5), ("loops.delay.force", 0.008)];
     for (name, exact) in exact {
         let (value, sd) = found(&answer, name);
-        assert!((value - exact).abs() < 4.0 * sd && sd < 0.05 * exact, "{name}: {value} ± {sd}");
+        assert!((value - exact).abs() < 4.0 * sd && sd < 0.1 * exact, "{name}: {value} ± {sd}");
     }
     // Without them alpha is far off.
     let plain = found(&fit("", "plain"), "alpha").0;

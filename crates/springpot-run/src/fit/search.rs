@@ -24,6 +24,8 @@ const BATCH: usize = 4;
 const SAME: f64 = 1e-6;
 /// As of minima at a bound that a logarithm only drifts towards.
 const NEARLY: f64 = 1e-4;
+/// The square of a relative residual that is rounding.
+const EXACT: f64 = 1e-20;
 /// Rounds of starts about the least minimum.
 const ROUNDS: u64 = 4;
 /// Samples of a long stroke from which the search begins.
@@ -169,6 +171,8 @@ fn about(
     stop: &AtomicBool,
 ) -> Result<Fit, Refused> {
     let fitting = problem.records[0].fitting;
+    // Rows that the law meets to rounding leave nothing to be compared.
+    let exact = EXACT * found.rows as f64;
     for round in 1..=ROUNDS {
         if stop.load(Ordering::Relaxed) {
             break;
@@ -183,12 +187,12 @@ fn about(
         let others = spread(settings.starts - 1, jobs, stop, |k| reach(&near, &settings, k + 1, stop));
         let others = others.into_iter().collect::<Result<Vec<_>, _>>()?;
         let least = others.iter().map(Reached::cost).fold(f64::INFINITY, f64::min);
-        if least >= found.cost * (1.0 - SAME) {
+        if least >= found.cost * (1.0 - SAME) || found.cost <= exact {
             break;
         }
         found = best(problem, &settings, &others, stop)?;
     }
-    let least = reached.iter().filter(|one| one.cost() <= found.cost * (1.0 + NEARLY)).count();
+    let least = reached.iter().filter(|one| one.cost() <= found.cost * (1.0 + NEARLY) + exact).count();
     found.starts = [reached.len(), least];
     Ok(found)
 }
