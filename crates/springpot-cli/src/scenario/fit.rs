@@ -105,11 +105,14 @@ fn default_folder(file: &Path) -> PathBuf {
     Path::new("results").join(stem)
 }
 
-/// What `check` says of measurements, as leads and words; and what deserves a warning.
+/// Lines, as leads and words, and what deserves a warning.
+pub(super) type Ahead = (Vec<(String, String)>, Vec<String>);
+
+/// What `check` says of measurements.
 ///
 /// # Errors
 /// The refusals of a fit.
-pub(super) fn ahead(scenario: &Scenario, catalog: &Catalog) -> Result<(Vec<(String, String)>, Vec<String>), Refusals> {
+pub(super) fn ahead(scenario: &Scenario, catalog: &Catalog) -> Result<Ahead, Refusals> {
     let fitting = scenario.fit(catalog)?;
     let plan = fitting.plan();
     let (mut lines, mut warnings) = (Vec::new(), Vec::new());

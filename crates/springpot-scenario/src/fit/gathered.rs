@@ -180,8 +180,11 @@ fn place_of_fit(root: &Table<'_>) -> crate::Place {
     root.get("fit").map_or_else(|| root.node.place.clone(), |field| field.node.place.clone())
 }
 
+/// The columns whose zero is sought, and those whose lateness is.
+type Beside = (Vec<usize>, Vec<usize>);
+
 /// Record `k`, and the columns whose zero and lateness are sought.
-fn one(ctx: &Context<'_>, root: &Table<'_>, k: usize, global: &[By]) -> Read<(Gathered, (Vec<usize>, Vec<usize>))> {
+fn one(ctx: &Context<'_>, root: &Table<'_>, k: usize, global: &[By]) -> Read<(Gathered, Beside)> {
     let items = data(root)?;
     let mut taken = HashMap::new();
     // Names of those before it.

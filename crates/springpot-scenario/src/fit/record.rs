@@ -114,7 +114,7 @@ impl<'a> Record<'a> {
 
     /// Refuses columns of other names.
     fn known(&self, names: &[&str]) -> Read<()> {
-        for wanted in self.wanted.iter().filter(|wanted| !names.contains(&wanted.field.key)) {
+        if let Some(wanted) = self.wanted.iter().find(|wanted| !names.contains(&wanted.field.key)) {
             let key = wanted.field.key;
             let message = format!("`columns` of {} has no {:?}", self.table.what, shorten(key));
             let refusal = wanted.field.node.place.refuse(RefusalKind::UnknownName, message);
