@@ -265,7 +265,9 @@ impl Material {
                         Slope::Number(by) => by,
                         // A number of a law names no time.
                         Slope::Signal { by, .. } => by.at(0.0).value,
-                        Slope::Feedback(_) => return Err(format!("constants.{name} moves what follows from the state")),
+                        Slope::Feedback(_) => {
+                            return Err(format!("constants.{name} moves what follows from the state"));
+                        }
                     };
                 }
                 Ok(Turned::Law(own))

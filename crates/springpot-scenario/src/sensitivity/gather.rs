@@ -9,8 +9,8 @@ use crate::text::document::Node;
 use springpot::actuation::Drive;
 use springpot::control::{ControllerNumber, FeedbackSlope};
 use springpot::dual::Dual;
-use springpot::law::Network;
 use springpot::law::leaf::EndStop;
+use springpot::law::{Heat, Network};
 use springpot::model::BodySpec;
 use springpot::sensitivity::{Seed, Switched};
 use springpot::signal::{MovedJump, Signal};
@@ -157,6 +157,8 @@ pub(super) struct Gather {
     laws: BTreeMap<usize, Vec<f64>>,
     /// By joint, the slopes of stiffness, damping, lower and upper end of its stop.
     stops: BTreeMap<usize, [f64; 4]>,
+    /// By element, the slopes of the numbers of its heat.
+    heats: BTreeMap<usize, Heat>,
     pub(super) rest: Vec<(usize, f64)>,
     inputs: Vec<(usize, usize, Signal)>,
     drives: Vec<(usize, Signal)>,
@@ -191,6 +193,15 @@ impl Gather {
 
     pub(super) fn stop(&mut self, joint: usize) -> &mut [f64; 4] {
         self.stops.entry(joint).or_default()
+    }
+
+    /// The slopes of what temperature does to an element, where it does anything.
+    pub(super) fn heat(&mut self, e: usize, plan: &Plan) -> Option<&mut Heat> {
+        let own = &plan.elements[e];
+        let still = own.element.law.as_heated()?.heat().still();
+        // The law is built anew with them.
+        self.law(e, own.parameters.len());
+        Some(self.heats.entry(e).or_insert(still))
     }
 
     pub(super) fn body(&mut self, body: usize) -> &mut BodySlope {
@@ -267,6 +278,10 @@ impl Gather {
             let numbers: Vec<Dual> =
                 planned.parameters.iter().zip(slopes).map(|(&value, slope)| Dual { value, slope }).collect();
             if let Ok(law) = (planned.element.entry.build)(&numbers, planned.element.derivative) {
+                let law = match self.heats.get(&element) {
+                    Some(moved) => law.with_moving_heat(*moved),
+                    None => law,
+                };
                 seeds.push(Seed::Law { element, law });
             }
         }

@@ -7,6 +7,7 @@ use crate::plan::events::EventPlan;
 use springpot::actuation::Drive;
 use springpot::control::FeedbackSlope;
 use springpot::elements::Component;
+use springpot::law::{Heat, Shift};
 use springpot::model::JointKind;
 use springpot::observe::{ElementQuantity, Quantity};
 use springpot::system::{Action, Setting};
@@ -93,7 +94,12 @@ static ROWS: &[Row] = &[
     row(&[Key("element"), Item, Key("parameters"), Any, Item], Nothing, law),
     row(&[Key("element"), Item, Key("bushing"), Any, Key("parameters"), Any], OfLaw, law),
     row(&[Key("element"), Item, Key("bushing"), Any, Key("parameters"), Any, Item], Nothing, law),
-    row(&[Key("element"), Item, Key("shift"), Any], Nothing, shift),
+    row(&[Key("element"), Item, Key("shift"), Any], Nothing, heat),
+    row(&[Key("element"), Item, Key("thermal"), Any], Nothing, heat),
+    row(&[Key("element"), Item, Key("expansion"), Any], Nothing, heat),
+    row(&[Key("element"), Item, Key("bushing"), Any, Key("shift"), Any], Nothing, heat),
+    row(&[Key("element"), Item, Key("bushing"), Any, Key("thermal"), Any], Nothing, heat),
+    row(&[Key("element"), Item, Key("bushing"), Any, Key("expansion"), Any], Nothing, heat),
     row(&[Key("element"), Item, Key("rest_length")], Nothing, rest),
     row(&[Key("element"), Item, Key("rest")], Zero, rest),
     row(&[Key("element"), Item, Key("bushing"), Any, Key("rest")], Zero, rest),
@@ -356,6 +362,50 @@ fn law(gather: &mut Gather, scene: &Scene<'_>, steps: &[Step], slope: Slope) -> 
     Ok(())
 }
 
+/// What temperature does: the shift, the thermal state, the expansion.
+fn heat(gather: &mut Gather, scene: &Scene<'_>, steps: &[Step], slope: Slope) -> Moved {
+    let by = slope.number()?;
+    let (table, name) = (key(&steps[steps.len() - 2]), key(&steps[steps.len() - 1]));
+    let is_written = |name: &str| {
+        let mut node: &crate::text::document::Node = scene.document;
+        for step in steps.iter().take(steps.len() - 1) {
+            node = match step {
+                Step::Key(key) => node.get(key)?,
+                Step::Index(index) => node.items()?.get(*index)?,
+            };
+        }
+        node.get(name)
+    };
+    for e in elements(scene, steps) {
+        let starts_with_ambient = is_written("start").is_none();
+        let Some(own) = gather.heat(e, scene.plan) else { return Err("no temperature acts on it".to_owned()) };
+        let Heat { shift, thermal, expansion } = own;
+        let number = match (table, name, shift, thermal, expansion) {
+            ("shift", "C1", Some(Shift::Wlf { c1, .. }), ..) => c1,
+            ("shift", "C2", Some(Shift::Wlf { c2, .. }), ..) => c2,
+            ("shift", "energy", Some(Shift::Arrhenius { energy, .. }), ..) => energy,
+            ("shift", "T_ref", Some(Shift::Wlf { reference, .. } | Shift::Arrhenius { reference, .. }), ..) => {
+                reference
+            }
+            ("thermal", "capacity", _, Some(thermal), _) => &mut thermal.capacity,
+            ("thermal", "conductance", _, Some(thermal), _) => &mut thermal.conductance,
+            ("thermal", "ambient", _, Some(thermal), _) => {
+                // What is left out starts as warm as that.
+                if starts_with_ambient {
+                    thermal.start += by;
+                }
+                &mut thermal.ambient
+            }
+            ("thermal", "start", _, Some(thermal), _) => &mut thermal.start,
+            ("expansion", "coefficient", _, _, Some(expansion)) => &mut expansion.coefficient,
+            ("expansion", "T_ref", _, _, Some(expansion)) => &mut expansion.reference,
+            _ => return Err("no derivative by it is known".to_owned()),
+        };
+        *number += by;
+    }
+    Ok(())
+}
+
 /// Whether a parameter of this name is an order: units have it as an exponent.
 fn is_the_order(plan: &crate::ElementPlan, name: &str) -> bool {
     plan.element.entry.params.iter().any(|param| param.unit.contains(&format!("^{name}")))
@@ -370,11 +420,6 @@ pub(super) fn exponent(scene: &Scene<'_>, steps: &[Step], name: &str) -> Option<
     let plan = &scene.plan.elements[*elements(scene, steps).first()?];
     let k = plan.element.entry.params.iter().position(|param| param.name == name)?;
     plan.parameters.get(k).copied()
-}
-
-/// Of moduli alone a derivative is known: [`crate::fit`].
-fn shift(_: &mut Gather, _: &Scene<'_>, _: &[Step], _: Slope) -> Moved {
-    Err("no derivative by it is known".to_owned())
 }
 
 fn rest(gather: &mut Gather, scene: &Scene<'_>, steps: &[Step], slope: Slope) -> Moved {

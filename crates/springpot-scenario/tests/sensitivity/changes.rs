@@ -168,7 +168,8 @@ fn events_set_torques_and_inputs() {
 #[test]
 fn torques_that_events_set_follow_from_nothing_else() {
     let text = PENDULUM.replace("[motion]\n", EVENTS);
-    let text = text.replace("\"height*step(t - t_s)*step(t_s + width*5 - t)\"", "\"height*step(t - t_s) - 4*q.q1 - 0.3*v.q1\"");
+    let text = text
+        .replace("\"height*step(t - t_s)*step(t_s + width*5 - t)\"", "\"height*step(t - t_s) - 4*q.q1 - 0.3*v.q1\"");
     let paths = [
         ("element.strut.c", 0.05),
         ("motion.start.q.q1", 1e-3),

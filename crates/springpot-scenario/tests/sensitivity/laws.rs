@@ -62,3 +62,29 @@ fn starts_that_are_singular() {
         compare(&text, &["q.q1", "v.q1", "a.q1", "strut.force"], &paths);
     }
 }
+
+#[test]
+fn heat() {
+    let told = slider(
+        "law = \"fractional-zener\"\nparameters = { k_e = 20, k_m = 50, c = 30, alpha = 0.5 }\n\
+         shift = { kind = \"wlf\", C1 = 8.86, C2 = \"101.6 K\", T_ref = \"293.15 K\" }\n\
+         inputs = { T = \"T_m + 8*sin(9*t)\" }",
+    );
+    let told = format!("[constants]\nT_m = 295\n{told}");
+    let paths = [("element.strut.shift.C1", 1e-2), ("constants.T_m", 2e-2), ("element.strut.alpha", 1e-3)];
+    compare(&told, &COLUMNS_OF_SLIDER, &paths);
+    let warms = slider(
+        "law = \"fractional-kelvin-voigt\"\nparameters = { k = 50, c = 50, alpha = 0.5 }\n\
+         shift = { kind = \"arrhenius\", energy = 80000, T_ref = \"293.15 K\" }\n\
+         thermal = { capacity = \"0.5 J/K\", conductance = \"0.2 W/K\", ambient = \"295.15 K\" }\n\
+         expansion = { coefficient = \"2 mm/K\", T_ref = \"295.15 K\" }",
+    );
+    let paths = [
+        ("element.strut.shift.energy", 100.0),
+        ("element.strut.thermal.capacity", 1e-3),
+        ("element.strut.thermal.ambient", 2e-2),
+        ("element.strut.expansion.coefficient", 1e-5),
+        ("element.strut.c", 0.1),
+    ];
+    compare(&warms, &COLUMNS_OF_SLIDER, &paths);
+}

@@ -65,6 +65,9 @@ const BEGUN: f64 = 1e-3;
 /// Share of the largest change below which that of one velocity counts as so large.
 const BESIDE: f64 = 1e-4;
 
+/// Change of the forces, in units of the largest, at which they are found.
+const SETTLED: f64 = 1e-12;
+
 /// The node of a row.
 pub(crate) const ROW: usize = STAGES + 1;
 
@@ -572,6 +575,29 @@ impl Variation {
         self.ask_singular(equations);
     }
 
+    /// Asks again the laws that follow what changes of strokes and rates at the nodes by more than their tangents: those whose losses warm them; false
+    /// where they answer as before.
+    pub(crate) fn ask_again(&mut self, equations: &Equations) -> bool {
+        let warms = |element: &crate::elements::Element| {
+            element.law.as_heated().is_some_and(|heated| heated.heat().thermal.is_some())
+        };
+        if !self.system.elements.iter().any(warms) {
+            return false;
+        }
+        let before: Vec<Vec<f64>> = self.elements.iter().map(|element| element.force.clone()).collect();
+        self.ask(equations);
+        let moved = |(element, before): (&ElementVariation, &Vec<f64>)| {
+            let count = self.by.parameters.len();
+            (0..count).any(|p| {
+                let of = |blocks: &[f64]| blocks.iter().skip(p).step_by(count).copied().collect::<Vec<_>>();
+                let (now, before) = (of(&element.force), of(before));
+                let largest = now.iter().fold(0.0f64, |largest, force| largest.max(force.abs()));
+                now.iter().zip(&before).any(|(now, before)| (now - before).abs() > SETTLED * largest)
+            })
+        };
+        self.elements.iter().zip(&before).any(moved)
+    }
+
     /// Takes the accepted step into what changes of the laws' states; the bank has not taken it yet.
     pub(crate) fn commit(&mut self, equations: &Equations) {
         self.foresee(STAGES, equations);
@@ -683,6 +709,7 @@ impl Variation {
                 rate: &rate[ROW * count..],
                 inputs: [&values[own(values)..], &rates[own(rates)..]],
                 step: theta.map(|_| of_step(count, [stroke, rate], inputs)),
+                passed: None,
             };
             force.fill(0.0);
             stored.fill(0.0);
@@ -840,14 +867,14 @@ impl Variation {
 /// What changes of what a law is told of the start of the step.
 fn at_start<'a>(count: usize, [stroke, rate]: [&'a Vec<f64>; 2], inputs: &'a [Vec<f64>; 2]) -> PointVariation<'a> {
     let inputs = inputs.each_ref().map(|blocks| &blocks[..blocks.len() / (ROW + 1)]);
-    PointVariation { stroke: &stroke[..count], rate: &rate[..count], inputs, step: None }
+    PointVariation { stroke: &stroke[..count], rate: &rate[..count], inputs, step: None, passed: None }
 }
 
 /// What changes of what a law is told of a step, without the row behind.
 fn of_step<'a>(count: usize, [stroke, rate]: [&'a Vec<f64>; 2], inputs: &'a [Vec<f64>; 2]) -> StepVariation<'a> {
     let step = (STAGES + 1) * count;
     let inputs = inputs.each_ref().map(|blocks| &blocks[..blocks.len() / (ROW + 1) * (STAGES + 1)]);
-    StepVariation { count, stroke: &stroke[..step], rate: &rate[..step], inputs }
+    StepVariation { count, stroke: &stroke[..step], rate: &rate[..step], inputs, passed: None }
 }
 
 /// Velocity, ratio and speed of a joint of the extended robot.

@@ -191,7 +191,7 @@ impl Memory {
         Ok(())
     }
 
-    pub(super) fn is_fractional(&self) -> bool {
+    pub(crate) fn is_fractional(&self) -> bool {
         self.alpha > 0.0 && self.alpha < 1.0
     }
 

@@ -70,6 +70,7 @@ pub mod memory;
 pub mod mittag_leffler;
 pub mod prony;
 pub mod scheme;
+mod slopes;
 pub mod step;
 mod table;
 mod tangent;

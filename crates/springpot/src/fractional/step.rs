@@ -113,6 +113,12 @@ impl RatePolynomial {
         let [_, u1, u2, u3] = self.u;
         if self.h == 0.0 { 0.0 } else { (u1 + theta * (2.0 * u2 + theta * 3.0 * u3)) / self.h }
     }
+
+    /// The third derivative of x at θ; 0 for a step without length.
+    pub(crate) fn turn(&self, theta: f64) -> f64 {
+        let [_, _, u2, u3] = self.u;
+        if self.h == 0.0 { 0.0 } else { (2.0 * u2 + theta * 6.0 * u3) / (self.h * self.h) }
+    }
 }
 
 /// Coefficients of θ^p, p = 0…4, of θ(θ − c_1)(θ − c_2)(θ − 1), which vanishes where the cubic of the rates is exact.

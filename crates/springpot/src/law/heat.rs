@@ -172,6 +172,31 @@ impl Heat {
         Ok(())
     }
 
+    /// Its numbers: those of the shift, of the thermal state and of the expansion, of those that are there.
+    pub(super) fn numbers(&self) -> Vec<f64> {
+        let mut numbers = Vec::new();
+        match self.shift {
+            Some(Shift::Wlf { c1, c2, reference }) => numbers.extend([c1, c2, reference]),
+            Some(Shift::Arrhenius { energy, reference }) => numbers.extend([energy, reference]),
+            None => {}
+        }
+        if let Some(Thermal { capacity, conductance, ambient, start }) = self.thermal {
+            numbers.extend([capacity, conductance, ambient, start]);
+        }
+        numbers.extend(self.expansion.iter().flat_map(|own| [own.coefficient, own.reference]));
+        numbers
+    }
+
+    /// The same made of 0: of which no number moves.
+    pub fn still(&self) -> Self {
+        let shift = self.shift.map(|shift| match shift {
+            Shift::Wlf { .. } => Shift::Wlf { c1: 0.0, c2: 0.0, reference: 0.0 },
+            Shift::Arrhenius { .. } => Shift::Arrhenius { energy: 0.0, reference: 0.0 },
+        });
+        let thermal = self.thermal.map(|_| Thermal { capacity: 0.0, conductance: 0.0, ambient: 0.0, start: 0.0 });
+        Self { shift, thermal, expansion: self.expansion.map(|_| Expansion { coefficient: 0.0, reference: 0.0 }) }
+    }
+
     /// x − coefficient·(T − T_ref) less x.
     pub(super) fn stroke(&self, temperature: f64) -> f64 {
         self.expansion.map_or(0.0, |Expansion { coefficient, reference }| -coefficient * (temperature - reference))

@@ -233,6 +233,14 @@ impl Network {
         Self::Heated(Box::new(Heated::new(law, heat, inputs, takes)))
     }
 
+    /// The same where a parameter moves the numbers of its heat by those of `moved`, which is made of the same: [`Self::numbers`] carry that.
+    pub fn with_moving_heat(self, moved: Heat) -> Self {
+        match self {
+            Self::Heated(heated) => Self::Heated(Box::new(heated.moving(moved))),
+            other => other,
+        }
+    }
+
     /// What temperature does to it, where it does anything.
     pub fn as_heated(&self) -> Option<&Heated> {
         match self {
@@ -278,9 +286,7 @@ impl Network {
     /// The numbers of its leaves, in their order, with their derivatives where it was built of such.
     pub fn numbers(&self) -> Vec<Dual> {
         let mut numbers = Vec::new();
-        self.ask().for_each_leaf(&mut |leaf| {
-            leaf.numbers(&mut |number| numbers.push(number));
-        });
+        self.ask().numbers(&mut |number| numbers.push(number));
         numbers
     }
 

@@ -19,6 +19,8 @@ pub struct StepVariation<'a> {
     pub rate: &'a [f64],
     /// Of the inputs there, value and rate, point by point; empty where no parameter moves any.
     pub inputs: [&'a [f64]; 2],
+    /// Of the time that has passed since the start at each node, s blocks, by the clock of the law; `None` where no parameter moves that.
+    pub passed: Option<&'a [f64]>,
 }
 
 /// What parameters change of what a law is told of one time.
@@ -32,6 +34,8 @@ pub struct PointVariation<'a> {
     pub inputs: [&'a [f64]; 2],
     /// Of the step around it, where there is one.
     pub step: Option<StepVariation<'a>>,
+    /// Of the time that has passed since the start of that, a block; `None` where no parameter moves that.
+    pub passed: Option<&'a [f64]>,
 }
 
 /// What parameters change of what a law is at one time: blocks of derivatives, to which every leaf adds its own.
@@ -215,6 +219,12 @@ impl<'a> StepVariation<'a> {
         let from = (point * inputs + input) * self.count;
         let [values, rates] = self.inputs;
         Some([values.get(from..from + self.count)?, rates.get(from..from + self.count)?])
+    }
+
+    /// The parameters that move the clock.
+    pub(super) fn moves_clock(&self) -> impl Iterator<Item = usize> + 'a {
+        let (count, passed) = (self.count, self.passed.unwrap_or_default());
+        (0..count).filter(move |p| passed.iter().skip(*p).step_by(count).any(|moved| *moved != 0.0))
     }
 
     /// As parameter `p` has it: strokes and rates at the nodes stay unless they are those that `told` says.

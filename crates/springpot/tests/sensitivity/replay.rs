@@ -24,6 +24,8 @@ pub(crate) struct Replay {
     pub difference: f64,
     /// What counts as no change, in units of the values over that step: their rounding.
     pub rounding: f64,
+    /// Whether numbers move the clock of the law.
+    pub moves_clock: bool,
     /// Which of the numbers are orders: their differences are those of kernels that are new, known as well as those know energies.
     pub orders: &'static [usize],
 }
@@ -50,6 +52,7 @@ impl Replay {
             steps: vec![0.01, 0.023, 0.04, 0.017, 0.031, 0.05, 0.022, 0.037],
             difference: 4e-4,
             rounding: 1e-6,
+            moves_clock: false,
             orders: &[],
         }
     }
@@ -166,8 +169,9 @@ impl Replay {
         seen
     }
 
+    /// Between nodes, where a clock moves, rows change as well as they are known, and not as their digits do.
     fn thetas(&self) -> Vec<f64> {
-        if self.nodes == Nodes::Radau { vec![THETA, 1.0] } else { vec![1.0] }
+        if self.nodes == Nodes::Radau && !self.moves_clock { vec![THETA, 1.0] } else { vec![1.0] }
     }
 
     /// What changes of it by each of these parameters, in the order of [`Self::values_at`].
@@ -217,8 +221,13 @@ impl Replay {
             }
             vary_at(law, (When::Between, &step.point(0)), state, &told, own, &mut seen, "now");
             let of_step = blocks(&self.times(step.t, step.h));
-            let around =
-                StepVariation { count, stroke: &of_step[0], rate: &of_step[1], inputs: [&of_step[2], &of_step[3]] };
+            let around = StepVariation {
+                count,
+                stroke: &of_step[0],
+                rate: &of_step[1],
+                inputs: [&of_step[2], &of_step[3]],
+                passed: None,
+            };
             let (response, nodes) = (law.evaluate(step, state), step.nodes.count());
             let mut forces = vec![f64::NAN; nodes * count];
             law.vary(step, state, &around, own, &mut forces);
@@ -311,7 +320,7 @@ impl Replay {
 
 fn point<'a>(blocks: &'a [Vec<f64>; 4], step: Option<StepVariation<'a>>) -> PointVariation<'a> {
     let [stroke, rate, values, rates] = blocks;
-    PointVariation { stroke, rate, inputs: [values, rates], step }
+    PointVariation { stroke, rate, inputs: [values, rates], step, passed: None }
 }
 
 fn vary_at(

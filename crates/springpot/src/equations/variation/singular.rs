@@ -237,6 +237,7 @@ impl Variation {
             rate: &rate[ROW * count..],
             inputs: [&values[own(values)..], &rates[own(rates)..]],
             step: None,
+            passed: None,
         };
         let point = snapshot.evaluation.elements[e].point(snapshot.evaluation.t);
         let [value, once, twice] = &mut sums;

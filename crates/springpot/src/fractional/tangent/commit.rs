@@ -69,6 +69,37 @@ impl MemoryTangent {
         }
     }
 
+    /// Behind [`Self::commit`] of a step that was differentiated at its lags: its end moves by `delta_h`, P numbers. `after` is the memory that the
+    /// step was taken into.
+    ///
+    /// A mode goes on by dx/dt − λ z, and so does what only knows the last piece where that moves on beneath it.
+    pub(crate) fn move_end(
+        &mut self,
+        [memory, after]: [&Memory; 2],
+        step: &TangentStep,
+        end: Option<&TangentEnd>,
+        delta_h: &[f64],
+    ) {
+        let Some(past) = after.past() else { return };
+        let (polynomial, h) = (&step.polynomial, step.polynomial.h);
+        let rate = polynomial.rate(1.0);
+        add(&mut self.now, memory.slopes(polynomial, 1.0).derivative, delta_h);
+        add(&mut self.travelled, rate, delta_h);
+        // What is paid of a debt stays, however long the step is.
+        let debt = end.and_then(|end| memory.debt(polynomial, end.stroke, end.resolution));
+        let paid = debt.map_or(0.0, |debt| debt.rate);
+        for (k, (lambda, z)) in past.kernel().lambda.iter().zip(past.modes()).enumerate() {
+            let mut psi = [0.0; 4];
+            moments(lambda * h, &mut psi);
+            add(self.modes.row_mut(k), (rate + paid - lambda * z) - paid * psi[0], delta_h);
+        }
+        add(self.piece.row_mut(0), -paid / h, delta_h);
+        let [_, u1, u2, u3] = polynomial.u;
+        for (p, slope) in [u1, 2.0 * u2, 3.0 * u3].into_iter().enumerate() {
+            add(self.piece.row_mut(p), slope / h, delta_h);
+        }
+    }
+
     /// δD^α x at the end of the step.
     fn find_now(&mut self, memory: &Memory, past: &History, step: &TangentStep, delta_u: &[f64]) {
         let h = step.polynomial.h;

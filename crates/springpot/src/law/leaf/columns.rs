@@ -106,6 +106,7 @@ impl<L: Columns> ByColumns for L {
                 forces[p] += leaf.force(step, solved, i + 1).slope;
             }
         });
+        lose(self, told, forces);
     }
 
     fn commit(&self, step: &Step, state: StateRef, told: &StepVariation, own: VariationMut) {
@@ -119,6 +120,7 @@ impl<L: Columns> ByColumns for L {
                 variables.next().into_iter().for_each(|own| *own = variable.slope);
             });
         });
+        lose(self, told, variables);
     }
 
     fn powers(&self, step: &Step, state: StateRef, told: &StepVariation, own: VariationRef, sum: &mut PowersVariation) {
@@ -129,6 +131,8 @@ impl<L: Columns> ByColumns for L {
                 sum.input[k * own.count + p] += power.input.slope;
             }
         });
+        lose(self, told, sum.dissipation);
+        lose(self, told, sum.input);
     }
 
     fn at(
@@ -164,6 +168,15 @@ impl<L: Columns> ByColumns for L {
                     add(p, leaf.between(&at, &variables(state.variables, &own, p)));
                 }
             }
+        }
+    }
+}
+
+/// Of inner variables nothing is known where a parameter moves the clock.
+fn lose(leaf: &dyn Leaf, told: &StepVariation, blocks: &mut [f64]) {
+    if leaf.size().variables > 0 {
+        for p in told.moves_clock() {
+            blocks.iter_mut().skip(p).step_by(told.count).for_each(|block| *block = f64::NAN);
         }
     }
 }

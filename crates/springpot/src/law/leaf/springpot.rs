@@ -154,6 +154,38 @@ impl Springpot {
         TangentStep { start: step.start(), nodes, places, form, polynomial: step.polynomial() }
     }
 
+    /// What changes of strokes and rates at the times of the points, where the clock moves the points and `told` says what changes of those at them.
+    fn at_times(step: &TangentStep, told: &StepVariation) -> [Vec<f64>; 2] {
+        let (mut stroke, mut rate) = (told.stroke.to_vec(), told.rate.to_vec());
+        let (passed, count) = (told.passed.unwrap_or_default(), told.count);
+        let positions = step.places.map_or(step.nodes.positions(), |places| places.positions());
+        for ((passed, theta), k) in passed.chunks_exact(count).zip(positions).zip(1..) {
+            add(&mut stroke[k * count..(k + 1) * count], -step.polynomial.rate(*theta), passed);
+            add(&mut rate[k * count..(k + 1) * count], -step.polynomial.bend(*theta), passed);
+        }
+        [stroke, rate]
+    }
+
+    /// Adds to the blocks of D^alpha x at the nodes what moves of them with the clock, where strokes and rates at them stay.
+    fn add_moved(memory: &Memory, step: &Step, passed: &[f64], count: usize, derivatives: &mut [f64]) {
+        let (start, polynomial) = (step.start(), step.polynomial());
+        let affine = memory.respond_at(&start, step.nodes, step.places, step.form);
+        for (i, derivatives) in derivatives.chunks_exact_mut(count).enumerate() {
+            let own = &passed[i * count..(i + 1) * count];
+            if own.iter().any(|passed| *passed != 0.0) {
+                // Of a singular start, whose share follows from the time since then, nothing is known.
+                let theta = step.positions()[i];
+                let slope = if memory.is_singular() { f64::NAN } else { memory.slopes(&polynomial, theta).derivative };
+                add(derivatives, slope, own);
+            }
+            for (j, passed) in passed.chunks_exact(count).enumerate() {
+                let at = step.positions()[j];
+                let along = affine.stroke[i][j] * polynomial.rate(at) + affine.rate[i][j] * polynomial.bend(at);
+                add(derivatives, -along, passed);
+            }
+        }
+    }
+
     /// D^alpha x at node `i` of a step, the share of a singular start as the course takes it.
     fn derivative_at(memory: &Memory, step: &Step, i: usize) -> f64 {
         let start = step.start();
@@ -328,6 +360,9 @@ impl Leaf for Springpot {
         let mut derivatives = vec![0.0; forces.len()];
         let singular = if step.course == Course::Sought { Singular::Moments } else { Singular::Values };
         tangent.explicit(memory, &Self::tangent_step(step), singular, &at_start, &mut derivatives);
+        if let Some(passed) = told.passed.filter(|_| memory.is_fractional()) {
+            Self::add_moved(memory, step, passed, own.count, &mut derivatives);
+        }
         for (i, forces) in forces.chunks_exact_mut(own.count).enumerate() {
             let inputs = step.point(i + 1).inputs;
             add(forces, self.coefficient.at(inputs).value, &derivatives[i * own.count..(i + 1) * own.count]);
@@ -339,13 +374,23 @@ impl Leaf for Springpot {
 
     fn commit_variation(&self, step: &Step, state: StateRef, told: &StepVariation, own: VariationMut) {
         let tangent_step = Self::tangent_step(step);
-        let mut changes = vec![0.0; 4 * own.count];
-        tangent_step.delta_polynomial(told.stroke, told.rate, &mut changes);
+        let (mut changes, count, memory) = (vec![0.0; 4 * own.count], own.count, &state.memories[0]);
+        let moved = told.passed.filter(|_| memory.is_fractional());
+        let at_times = moved.map(|_| Self::at_times(&tangent_step, told));
+        let [stroke, rate] =
+            at_times.as_ref().map_or([told.stroke, told.rate], |own| own.each_ref().map(Vec::as_slice));
+        tangent_step.delta_polynomial(stroke, rate, &mut changes);
         let last = step.nodes.count();
-        let end =
-            TangentEnd { stroke: step.stroke[last], delta_stroke: told.stroke_at(last), resolution: step.resolution };
+        let delta_stroke = &stroke[last * count..(last + 1) * count];
+        let end = TangentEnd { stroke: step.stroke[last], delta_stroke, resolution: step.resolution };
         let end = (step.form == Form::Rates).then_some(&end);
-        own.memories[0].commit(&state.memories[0], &tangent_step, &changes, end);
+        own.memories[0].commit(memory, &tangent_step, &changes, end);
+        if let Some(passed) = moved {
+            let mut after = [memory.clone()];
+            self.commit(step, StateMut { memories: &mut after, variables: &mut [], ready: &mut [] });
+            let of_end = &passed[(last - 1) * count..last * count];
+            own.memories[0].move_end([memory, &after[0]], &tangent_step, end, of_end);
+        }
     }
 
     fn vary_powers(
@@ -363,13 +408,23 @@ impl Leaf for Springpot {
         }
         let tangent_step = Self::tangent_step(step);
         let (mut changes, mut stored, mut dissipation) = (vec![0.0; 4 * count], vec![0.0; count], vec![0.0; count]);
-        tangent_step.delta_polynomial(told.stroke, told.rate, &mut changes);
+        let moved = told.passed.filter(|_| memory.is_fractional());
+        let at_times = moved.map(|_| Self::at_times(&tangent_step, told));
+        let [strokes, rates] =
+            at_times.as_ref().map_or([told.stroke, told.rate], |own| own.each_ref().map(Vec::as_slice));
+        tangent_step.delta_polynomial(strokes, rates, &mut changes);
         for k in 0..=step.nodes.count() {
             let (at, theta) = (step.point(k), if k == 0 { 0.0 } else { step.positions()[k - 1] });
-            let (delta_stroke, delta_rate) = (told.stroke_at(k), told.rate_at(k));
+            let [delta_stroke, delta_rate] = [strokes, rates].map(|blocks| &blocks[k * count..(k + 1) * count]);
             let point = TangentPoint { stroke: at.stroke, rate: at.rate, delta_stroke, delta_rate };
             let mut change = EnergyTangent { stored: &mut stored, dissipation: &mut dissipation };
             tangent.energy(memory, &tangent_step, theta, &point, &changes, &mut change);
+            if let Some(passed) = moved.filter(|_| k > 0) {
+                let (slopes, passed) =
+                    (memory.slopes(&tangent_step.polynomial, theta), &passed[(k - 1) * count..k * count]);
+                add(&mut stored, slopes.stored, passed);
+                add(&mut dissipation, slopes.dissipation, passed);
+            }
             let (c, energy) =
                 (self.coefficient.at(at.inputs), memory.energy(&tangent_step.polynomial, theta, at.stroke, at.rate));
             let followed = self.coefficient.input.and_then(|input| told.input_at(k, input, at.inputs.len()));
@@ -394,13 +449,31 @@ impl Leaf for Springpot {
         sum: &mut ObservationVariation,
     ) {
         let (memory, tangent, count) = (&state.memories[0], &own.memories[0], own.count);
-        let point = TangentPoint { stroke: at.stroke, rate: at.rate, delta_stroke: told.stroke, delta_rate: told.rate };
         let (mut changes, mut derivatives) = (vec![0.0; 4 * count], vec![0.0; count]);
+        let mut kinematics = [told.stroke.to_vec(), told.rate.to_vec()];
+        let mut moved = None;
+        if let (When::Within(step, theta), Some(passed)) = (when, told.passed.filter(|_| memory.is_fractional())) {
+            let polynomial = step.polynomial();
+            add(&mut kinematics[0], -polynomial.rate(theta), passed);
+            add(&mut kinematics[1], -polynomial.bend(theta), passed);
+            moved = Some((memory.slopes(&polynomial, theta), passed));
+        }
+        let [delta_stroke, delta_rate] = kinematics.each_ref().map(Vec::as_slice);
+        let point = TangentPoint { stroke: at.stroke, rate: at.rate, delta_stroke, delta_rate };
         let (tangent_step, theta, derivative, energy) = match (when, told.step) {
             (When::Within(step, theta), Some(around)) => {
                 let tangent_step = Self::tangent_step(step);
-                tangent_step.delta_polynomial(around.stroke, around.rate, &mut changes);
+                match around.passed.filter(|_| memory.is_fractional()) {
+                    Some(_) => {
+                        let [stroke, rate] = Self::at_times(&tangent_step, &around);
+                        tangent_step.delta_polynomial(&stroke, &rate, &mut changes);
+                    }
+                    None => tangent_step.delta_polynomial(around.stroke, around.rate, &mut changes),
+                }
                 tangent.at(memory, &tangent_step, theta, &point, &changes, &mut derivatives);
+                if let Some((slopes, passed)) = moved {
+                    add(&mut derivatives, slopes.derivative, passed);
+                }
                 let seen = self.at(step, theta, at, state);
                 let energy = memory.energy(&tangent_step.polynomial, theta, at.stroke, at.rate).stored;
                 let singular = if memory.is_singular() { memory.singular_part(at.t) } else { 0.0 };
@@ -421,6 +494,9 @@ impl Leaf for Springpot {
         let (mut stored, mut dissipation) = (vec![0.0; count], vec![0.0; count]);
         let mut change = EnergyTangent { stored: &mut stored, dissipation: &mut dissipation };
         tangent.energy(memory, &tangent_step, theta, &point, &changes, &mut change);
+        if let Some((slopes, passed)) = moved {
+            add(&mut stored, slopes.stored, passed);
+        }
         add(sum.stored, c, &stored);
         self.coefficient.add_change(at.inputs, followed, &own, energy, sum.stored);
     }

@@ -35,6 +35,8 @@ const SHARPNESS: f64 = 5.0 / 3.0;
 #[derive(Debug, Clone)]
 pub struct Heated {
     heat: Heat,
+    /// What a parameter changes of the numbers of the heat, where it was built of such.
+    moved: Heat,
     law: Network,
     /// Number of inputs of the law.
     inputs: usize,
@@ -112,7 +114,12 @@ impl Heated {
             Some(_) => unshifted(law, inputs),
             None => (law, false),
         };
-        Self { heat, law, inputs, takes, tells_factor }
+        Self { heat, moved: heat.still(), law, inputs, takes, tells_factor }
+    }
+
+    /// The same, whose numbers a parameter moves by those of `moved`.
+    pub(super) fn moving(self, moved: Heat) -> Self {
+        Self { moved, ..self }
     }
 
     /// What temperature does to it.

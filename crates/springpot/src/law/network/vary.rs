@@ -2,6 +2,7 @@
 
 use super::part::Part;
 use super::{LeafPart, Network};
+use crate::dual::Dual;
 use crate::fractional::{KernelError, MemoryTangent};
 use crate::law::leaf::When;
 use crate::law::state::StateRef;
@@ -14,6 +15,11 @@ use crate::law::variation::{
 ///
 /// As of [`Part`]: what is provided is the answer of parts side by side, and each part takes its own share of state and changes from the front.
 pub(in crate::law) trait Vary: Part {
+    /// Hands over the numbers of its own and of its parts, in their order, with their derivatives where it was built of such.
+    fn numbers(&self, take: &mut dyn FnMut(Dual)) {
+        self.parts().iter().for_each(|part| part.ask().numbers(take));
+    }
+
     /// The part of it of which no derivative is known ([`crate::law::Leaf::numbers`]), as it is called.
     fn without_derivatives(&self) -> Option<String> {
         self.parts().iter().find_map(|part| part.ask().without_derivatives())
@@ -123,6 +129,10 @@ impl LeafPart {
 }
 
 impl Vary for LeafPart {
+    fn numbers(&self, take: &mut dyn FnMut(Dual)) {
+        self.leaf.numbers(take);
+    }
+
     fn without_derivatives(&self) -> Option<String> {
         let known = self.leaf.numbers(&mut |_| {});
         (!known).then(|| self.name.as_ref().map_or(self.leaf.name(), |name| name).to_owned())

@@ -11,6 +11,9 @@ use crate::collocation::radau::{A, A_SQUARED, GAMMA};
 use crate::collocation::{RADAU_NODES, STAGES, TABLEAU};
 use crate::equations::{Equations, ROW, Variation};
 
+/// How often what changes of temperatures is found together with what changes of the motion.
+const MOST_PASSES: usize = 20;
+
 /// What changes may err in a step, in units of what the motion may: so they come to the accuracy that the motion comes to in its own steps.
 const TANGENTS: f64 = 4.0;
 
@@ -19,7 +22,6 @@ impl RadauStep {
     /// so in one way.
     pub(super) fn vary(&mut self, equations: &Equations, variation: &mut Variation, h: f64, t_end: f64) -> bool {
         variation.share_forces(equations);
-        let count = variation.count();
         let free = variation.of_run(equations.free());
         let elements = variation.elements.len();
         let mut force = vec![0.0; elements];
@@ -29,6 +31,27 @@ impl RadauStep {
             variation.see(equations, i + 1, stage.node(t), &force);
             variation.steer(i + 1, equations, &force);
         }
+        for pass in 0..MOST_PASSES {
+            // Temperatures follow from losses, and those from strokes and rates at the nodes.
+            if pass > 0 && !variation.ask_again(equations) {
+                break;
+            }
+            if !self.vary_once(equations, variation, &free, (h, pass > 0)) {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Works out what changes at the stages; where asked `again`, under what changes of the forces that is known.
+    fn vary_once(
+        &mut self,
+        equations: &Equations,
+        variation: &mut Variation,
+        free: &[usize],
+        (h, again): (f64, bool),
+    ) -> bool {
+        let count = variation.count();
         // The stages where the accelerations stay.
         let [start, stages @ .., _] = &mut variation.nodes;
         for (i, stage) in stages.iter_mut().enumerate() {
@@ -36,15 +59,17 @@ impl RadauStep {
             stage.v.copy_from_slice(&start.v);
             stage.a.fill(0.0);
             let moved = RADAU_NODES[i] * h;
-            for &k in &free {
+            for &k in free {
                 for block in k * count..(k + 1) * count {
                     stage.q[block] += moved * start.v[block];
                 }
             }
         }
         variation.follow(equations);
-        variation.ask(equations);
-        if !free.is_empty() && !self.solve_variation(equations, variation, &free, h) {
+        if !again {
+            variation.ask(equations);
+        }
+        if !free.is_empty() && !self.solve_variation(equations, variation, free, h) {
             return false;
         }
         let [_, stages @ .., _] = &mut variation.nodes;

@@ -87,16 +87,7 @@ impl Bent {
     }
 
     fn between(&self, from: f64, to: f64) -> f64 {
-        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-        let pace = |theta: f64| (-self.shift.ln_factor(self.temperature(theta))).exp();
-        let sum: f64 = GAUSS
-            .iter()
-            .map(|&[node, weight]| match node {
-                0.0 => weight * pace(middle),
-                _ => weight * (pace(middle - node * half) + pace(middle + node * half)),
-            })
-            .sum();
-        half * sum
+        integral(from, to, |theta| (-self.shift.ln_factor(self.temperature(theta))).exp())
     }
 
     fn temperature(&self, theta: f64) -> f64 {
@@ -105,4 +96,17 @@ impl Bent {
         let start = self.temperature[0];
         start + (1..=STAGES).map(|k| at(k) * (self.temperature[k] - start)).sum::<f64>()
     }
+}
+
+/// ∫ f dθ by five points of Gauss.
+pub(super) fn integral(from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+    let sum: f64 = GAUSS
+        .iter()
+        .map(|&[node, weight]| match node {
+            0.0 => weight * f(middle),
+            _ => weight * (f(middle - node * half) + f(middle + node * half)),
+        })
+        .sum();
+    half * sum
 }

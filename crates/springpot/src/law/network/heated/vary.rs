@@ -1,99 +1,430 @@
-//! What parameters change of a law under a temperature that is told: the clock and the expansion stay, and what its own law is told changes.
+//! What parameters change of a law under heat.
 //!
-//! Where a parameter moves the temperature itself nothing is known, and derivatives by it are NaN.
+//! They may move the temperature, and what it does: a_T, and with it the clock and its nodes; the stroke of heat. Its own law is told what changes
+//! of strokes, rates and inputs at its nodes, and of the time that has passed until them. A temperature that is a state changes as its losses do:
+//!
+//! δT_i + (hG/C) Σ_j A_ij δT_j = δT_0 + h Σ_j A_ij [δP_j − δG (T_j − T_a) + G δT_a − δC T'_j]/C,
+//!
+//! found by the iteration of the run.
 
-use super::{Heated, Inside};
+use super::warming::{Temperatures, implicit};
+use super::{Heated, Inside, Own, Values};
+use crate::collocation::{Nodes, RADAU_NODES, STAGES, lagrange_row};
+use crate::dual::{Dual, Real};
+use crate::law::heat::{GAS, Shift};
 use crate::law::leaf::When;
 use crate::law::network::part::Part;
 use crate::law::network::vary::Vary;
 use crate::law::state::StateRef;
-use crate::law::step::{Point, Response, Step};
+use crate::law::step::{InputValue, Point, Response, Step};
 use crate::law::variation::{
     ObservationVariation, PointVariation, PowersVariation, StepVariation, VariationMut, VariationRef, add,
 };
 
-/// What changes of rates and inputs at some times, as the law itself is told them.
+/// Iterations for what changes of the temperatures, and the change of it at which they end.
+const MOST_ITERATIONS: usize = 40;
+const ENOUGH: f64 = 1e-13;
+
+/// The numbers of the heat as one parameter has them.
+#[derive(Debug, Clone, Copy)]
+struct Numbers {
+    shift: [Dual; 3],
+    /// C, G, T_a and T(0).
+    thermal: [Dual; 4],
+    /// Coefficient and T_ref.
+    expansion: [Dual; 2],
+}
+
+impl Numbers {
+    /// ln a_T at a temperature, and its derivative by that.
+    fn ln_factor(&self, shift: &Shift, temperature: Dual) -> [Dual; 2] {
+        match (shift, self.shift) {
+            (Shift::Wlf { .. }, [c1, c2, reference]) => {
+                let (above, scale) = (temperature - reference, -(Dual::from(std::f64::consts::LN_10) * c1));
+                let whole = c2 + above;
+                [scale * above / whole, scale * c2 / (whole * whole)]
+            }
+            (Shift::Arrhenius { .. }, [energy, reference, _]) => {
+                let (one, energy) = (Dual::from(1.0), energy / Dual::from(GAS));
+                [energy * (one / temperature - one / reference), -(energy / (temperature * temperature))]
+            }
+        }
+    }
+
+    /// By how much a kelvin makes the stroke of the law longer.
+    fn by_temperature(&self) -> Dual {
+        -self.expansion[0]
+    }
+
+    /// By how much heat makes it longer.
+    fn stroke(&self, temperature: Dual) -> Dual {
+        self.by_temperature() * (temperature - self.expansion[1])
+    }
+}
+
+/// T and T' at the start and at the nodes as one parameter has them.
+#[derive(Debug, Clone, Copy)]
+struct Warmed {
+    temperature: [Dual; STAGES + 2],
+    warming: [Dual; STAGES + 2],
+}
+
+/// What changes of what the law itself is told: blocks.
+#[derive(Debug, Default)]
 struct Told {
+    stroke: Vec<f64>,
     rate: Vec<f64>,
     inputs: [Vec<f64>; 2],
-    /// The parameters that move the temperature.
-    unknown: Vec<usize>,
+    passed: Option<Vec<f64>>,
 }
 
 impl Told {
-    fn step<'a>(&'a self, told: &StepVariation<'a>) -> StepVariation<'a> {
-        StepVariation { rate: &self.rate, inputs: self.inputs.each_ref().map(Vec::as_slice), ..*told }
+    fn step(&self, count: usize) -> StepVariation<'_> {
+        let inputs = self.inputs.each_ref().map(Vec::as_slice);
+        StepVariation { count, stroke: &self.stroke, rate: &self.rate, inputs, passed: self.passed.as_deref() }
     }
 
-    fn point<'a>(&'a self, told: &PointVariation<'a>) -> PointVariation<'a> {
-        PointVariation { rate: &self.rate, inputs: self.inputs.each_ref().map(Vec::as_slice), step: None, ..*told }
+    fn point<'a>(&'a self, step: Option<StepVariation<'a>>) -> PointVariation<'a> {
+        let inputs = self.inputs.each_ref().map(Vec::as_slice);
+        PointVariation { stroke: &self.stroke, rate: &self.rate, inputs, step, passed: self.passed.as_deref() }
     }
 
-    /// Puts NaN where nothing is known.
-    fn mark(&self, blocks: &mut [f64], count: usize) {
-        for block in blocks.chunks_exact_mut(count) {
-            self.unknown.iter().for_each(|&p| block[p] = f64::NAN);
-        }
+    /// What is told of one point, whose kinematics and inputs are told from outside.
+    fn push(&mut self, seen: Seen) {
+        self.stroke.push(seen.stroke.slope);
+        self.rate.push(seen.rate.slope);
     }
 }
 
+/// A point as one parameter has it: what the law itself sees of it.
+struct Seen {
+    stroke: Dual,
+    rate: Dual,
+    inputs: Vec<InputValue<Dual>>,
+}
+
 impl Heated {
-    /// `factors` are a_T at the times of the blocks, `outer` the number of inputs from outside.
-    fn told_inside(
-        &self,
-        rate: &[f64],
-        [values, rates]: [&[f64]; 2],
-        (factors, outer, count): (&[f64], usize, usize),
-    ) -> Told {
-        let by_clock = |blocks: &[f64], each: usize| -> Vec<f64> {
-            let of = |(block, factor): (&[f64], &f64)| block.iter().map(|x| factor * x).collect::<Vec<_>>();
-            blocks.chunks_exact(each).zip(factors).flat_map(of).collect()
+    fn numbers_of(&self, own: &VariationRef, p: usize) -> Numbers {
+        let mut left = self.heat.numbers().into_iter().enumerate();
+        let mut next = |there: bool| match there {
+            true => left.next().map_or(Dual::default(), |(k, value)| Dual { value, slope: own.number(k)[p] }),
+            false => Dual::default(),
         };
-        let mut told = Told { rate: by_clock(rate, count), inputs: [Vec::new(), Vec::new()], unknown: Vec::new() };
-        if values.is_empty() {
-            return told;
-        }
-        let own = self.inputs + usize::from(self.tells_factor);
-        for (into, from) in told.inputs.iter_mut().zip([values.to_vec(), by_clock(rates, outer * count)]) {
-            for point in from.chunks_exact(outer * count) {
-                // a_T, the last of them, is that of the temperature.
-                into.extend_from_slice(&point[..self.inputs * count]);
-                into.resize(into.len() + (own - self.inputs) * count, 0.0);
-            }
-        }
-        let moves = |p: usize| {
-            let of = |input: usize| {
-                let blocks = values.chunks_exact(count).zip(rates.chunks_exact(count)).skip(input).step_by(outer);
-                blocks.into_iter().any(|(value, rate)| value[p] != 0.0 || rate[p] != 0.0)
-            };
-            self.input().filter(|_| self.heat.shift.is_some() || self.heat.expansion.is_some()).is_some_and(of)
-        };
-        told.unknown = (0..count).filter(|p| moves(*p)).collect();
-        told
+        let (wlf, shift) = (matches!(self.heat.shift, Some(Shift::Wlf { .. })), self.heat.shift.is_some());
+        let shift = [next(shift), next(shift), next(wlf)];
+        let thermal = std::array::from_fn(|_| next(self.heat.thermal.is_some()));
+        let expansion = std::array::from_fn(|_| next(self.heat.expansion.is_some()));
+        Numbers { shift, thermal, expansion }
     }
 
-    fn told_step(&self, step: &Step, inside: &Inside, told: &StepVariation) -> Told {
-        let factors = &inside.clock.factor[..=step.nodes.count()];
-        self.told_inside(told.rate, told.inputs, (factors, step.inputs_at(0).len(), told.count))
+    fn all_numbers(&self, own: &VariationRef) -> Vec<Numbers> {
+        (0..own.count).map(|p| self.numbers_of(own, p)).collect()
+    }
+
+    /// What it keeps itself as parameter `p` has it: ξ, T, heat lost and T'.
+    fn kept(&self, own: &Own, share: &VariationRef, p: usize) -> [Dual; 4] {
+        let clock = usize::from(self.heat.shift.is_some());
+        let of =
+            |k: usize, there: bool, value: f64| Dual { value, slope: if there { share.variable(k)[p] } else { 0.0 } };
+        let thermal = self.heat.thermal.is_some();
+        [
+            of(0, clock == 1, own.xi),
+            of(clock, thermal, own.temperature),
+            of(clock + 1, thermal, own.lost),
+            of(clock + 2, thermal, own.warming),
+        ]
+    }
+
+    /// What the law itself sees of a point.
+    fn see(
+        &self,
+        numbers: &Numbers,
+        [stroke, rate, temperature, warming]: [Dual; 4],
+        inputs: impl Iterator<Item = InputValue<Dual>>,
+    ) -> Seen {
+        let (ln, slope) = match &self.heat.shift {
+            Some(shift) => numbers.ln_factor(shift, temperature).into(),
+            None => (Dual::default(), Dual::default()),
+        };
+        let (factor, mut rest, mut inside) = (ln.exp(), inputs, Vec::new());
+        for i in 0..self.inputs {
+            let told = match (self.takes == Some(i), self.heat.thermal) {
+                (true, Some(_)) => InputValue { value: temperature, rate: warming },
+                _ => rest.next().unwrap_or(InputValue { value: Dual::default(), rate: Dual::default() }),
+            };
+            inside.push(InputValue { rate: factor * told.rate, ..told });
+        }
+        if self.tells_factor {
+            inside.push(InputValue { value: factor, rate: factor * factor * slope * warming });
+        }
+        let (longer, by_temperature) = match self.heat.expansion {
+            Some(_) => (numbers.stroke(temperature), numbers.by_temperature()),
+            None => (Dual::default(), Dual::default()),
+        };
+        Seen { stroke: stroke + longer, rate: factor * (rate + by_temperature * warming), inputs: inside }
+    }
+
+    /// What changes of the step as the law itself is told it; where `still` strokes and rates from outside stay at the nodes.
+    fn told_inside(
+        &self,
+        step: &Step,
+        warmed: &[Warmed],
+        told: &StepVariation,
+        numbers: &[Numbers],
+        still: bool,
+    ) -> Told {
+        let (count, outer) = (told.count, step.inputs_at(0).len());
+        let mut inside = Told::default();
+        for k in 0..=step.nodes.count() {
+            let mut each = Vec::with_capacity(count);
+            for (p, (warmed, numbers)) in warmed.iter().zip(numbers).enumerate() {
+                let moves = |block: &[f64]| if still && k > 0 { 0.0 } else { block[p] };
+                let stroke = Dual { value: step.stroke[k], slope: moves(told.stroke_at(k)) };
+                let slope = if told.rate.is_empty() { 0.0 } else { moves(told.rate_at(k)) };
+                let rate = Dual { value: step.rate.get(k).copied().unwrap_or(0.0), slope };
+                let of_input = |(i, input): (usize, &InputValue)| {
+                    let [by_value, by_rate] =
+                        told.input_at(k, i, outer).map_or([0.0; 2], |of| of.map(|block| block[p]));
+                    let [value, rate] =
+                        [(input.value, by_value), (input.rate, by_rate)].map(|(value, slope)| Dual { value, slope });
+                    InputValue { value, rate }
+                };
+                let inputs = step.inputs_at(k).iter().enumerate().map(of_input);
+                each.push(self.see(numbers, [stroke, rate, warmed.temperature[k], warmed.warming[k]], inputs));
+            }
+            push_inputs(&mut inside, &each);
+            each.into_iter().for_each(|seen| inside.push(seen));
+        }
+        inside.passed = self.passed(step, warmed, numbers, None);
+        inside
+    }
+
+    /// What changes of Δξ until the nodes, or until θ; `None` where nothing does.
+    fn passed(&self, step: &Step, warmed: &[Warmed], numbers: &[Numbers], until: Option<f64>) -> Option<Vec<f64>> {
+        let shift = self.heat.shift.as_ref()?;
+        let moves = |(warmed, numbers): (&Warmed, &Numbers)| {
+            warmed.temperature.iter().chain(&numbers.shift).any(|number| number.slope != 0.0)
+        };
+        if !warmed.iter().zip(numbers).any(moves) {
+            return None;
+        }
+        let (count, nodes) = (warmed.len(), step.nodes.count());
+        let mut passed = vec![0.0; count * if until.is_some() { 1 } else { nodes }];
+        for (p, (warmed, numbers)) in warmed.iter().zip(numbers).enumerate().filter(|(_, both)| moves(*both)) {
+            if step.nodes != Nodes::Radau {
+                // One node stands for the whole of a step of one size.
+                passed.iter_mut().skip(p).step_by(count).for_each(|passed| *passed = f64::NAN);
+                continue;
+            }
+            let pace = |theta: f64| {
+                let at = |k: usize| Dual::from(lagrange_row(k).iter().rev().fold(0.0, |sum, c| sum * theta + c));
+                let temperature = (0..=STAGES).map(|k| at(k) * warmed.temperature[k]).sum();
+                let [ln, _] = numbers.ln_factor(shift, temperature);
+                (-ln).exp()
+            };
+            let (mut from, mut sum) = (0.0, 0.0);
+            for (j, end) in RADAU_NODES.into_iter().enumerate() {
+                let to = until.map_or(end, |theta| theta.min(end));
+                if to > from {
+                    sum += super::clock::integral(from, to, |theta| pace(theta).slope);
+                    from = to;
+                }
+                if until.is_none() {
+                    passed[j * count + p] = step.h * sum;
+                }
+            }
+            if until.is_some() {
+                passed[p] = step.h * sum;
+            }
+        }
+        Some(passed)
+    }
+
+    /// What changes of the temperatures; the state is at the law's share, `own` at the start of all.
+    #[allow(clippy::too_many_arguments)]
+    fn warmed(
+        &self,
+        step: &Step,
+        kept: &Own,
+        course: &Temperatures,
+        inside: &Inside,
+        state: StateRef,
+        told: &StepVariation,
+        (own, numbers): (&VariationRef, &[Numbers]),
+    ) -> Vec<Warmed> {
+        let (nodes, outer) = (step.nodes.count(), step.inputs_at(0).len());
+        let still = |k: usize| [course.temperature[k].into(), course.warming[k].into()];
+        let of_input = |p: usize| {
+            let mut warmed = Warmed { temperature: [Dual::default(); 5], warming: [Dual::default(); 5] };
+            for k in 0..=nodes {
+                [warmed.temperature[k], warmed.warming[k]] = still(k);
+                let moved = self.input().and_then(|input| told.input_at(k, input, outer));
+                if let Some([value, rate]) = moved.filter(|_| self.heat.thermal.is_none()) {
+                    (warmed.temperature[k].slope, warmed.warming[k].slope) = (value[p], rate[p]);
+                }
+            }
+            warmed
+        };
+        let mut warmed: Vec<Warmed> = (0..told.count).map(of_input).collect();
+        let Some(thermal) = &self.heat.thermal else { return warmed };
+        let (count, matrix) = (told.count, step.matrix());
+        let [capacity, conductance] = [thermal.capacity, thermal.conductance];
+        let inverse = implicit(&matrix, step.h / capacity * conductance, nodes);
+        let powers = self.powers_of(step, inside, &mut state.clone());
+        for (p, warmed) in warmed.iter_mut().enumerate() {
+            let [_, temperature, _, _] = self.kept(kept, own, p);
+            warmed.temperature.iter_mut().take(nodes + 1).for_each(|own| own.slope = temperature.slope);
+        }
+        // A column ends by itself, so that it has the same bits whatever stands beside it.
+        let mut is_found = vec![false; count];
+        for _ in 0..MOST_ITERATIONS {
+            let changes = self.told_inside(step, &warmed, told, numbers, false);
+            let mut flows = [(); 2].map(|()| vec![0.0; (nodes + 1) * count]);
+            let [dissipation, input] = &mut flows;
+            let (mut behind, mut of_law) = (state, *own);
+            of_law.take(self.heat.numbers().len(), self.own_size());
+            let mut sum = PowersVariation { dissipation, input };
+            self.law.ask().vary_powers(&inside.step(step), &mut behind, &changes.step(count), &mut of_law, &mut sum);
+            for (p, ((warmed, numbers), is_found)) in warmed.iter_mut().zip(numbers).zip(&mut is_found).enumerate() {
+                if *is_found {
+                    continue;
+                }
+                let (mut change, mut size) = (0.0f64, f64::MIN_POSITIVE);
+                let [by_capacity, by_conductance, by_ambient, _] = numbers.thermal.map(|number| number.slope);
+                // Of the power by the clock of the wall.
+                let power = |k: usize, warmed: &Warmed| {
+                    let ln = match &self.heat.shift {
+                        Some(shift) => numbers.ln_factor(shift, warmed.temperature[k])[0].slope,
+                        None => 0.0,
+                    };
+                    flows[0][k * count + p] / inside.clock.factor[k] - powers[k].dissipation * ln
+                };
+                let driven = |k: usize, warmed: &Warmed| {
+                    let above = course.temperature[k] - thermal.ambient;
+                    let flow = by_conductance * above - conductance * by_ambient;
+                    (power(k, warmed) - flow - course.warming[k] * by_capacity) / capacity
+                };
+                let all: Values = std::array::from_fn(|k| if k <= nodes { driven(k, warmed) } else { 0.0 });
+                let start = warmed.temperature[0].slope;
+                let right: Values = std::array::from_fn(|i| match i < nodes {
+                    true => start + step.h * (0..nodes).map(|j| matrix[i][j] * all[j + 1]).sum::<f64>(),
+                    false => 0.0,
+                });
+                for i in 0..nodes {
+                    let next: f64 = (0..nodes).map(|j| inverse[i][j] * right[j]).sum();
+                    let moved = (next - warmed.temperature[i + 1].slope).abs();
+                    change = if moved > change || moved.is_nan() { moved } else { change };
+                    size = size.max(next.abs());
+                    warmed.temperature[i + 1].slope = next;
+                }
+                for k in 0..=nodes {
+                    let next = all[k] - conductance * warmed.temperature[k].slope / capacity;
+                    let moved = step.h * (next - warmed.warming[k].slope).abs();
+                    change = if moved > change || moved.is_nan() { moved } else { change };
+                    warmed.warming[k].slope = next;
+                }
+                *is_found = change <= ENOUGH * size || change.is_nan();
+            }
+            if is_found.iter().all(|found| *found) {
+                break;
+            }
+        }
+        warmed
+    }
+
+    /// The temperature between two steps as parameter `p` has it, T and T'.
+    fn temperature_now(
+        &self,
+        kept: &Own,
+        at: &Point,
+        told: &PointVariation,
+        (own, p): (&VariationRef, usize),
+    ) -> [Dual; 2] {
+        if self.heat.thermal.is_some() {
+            let [_, temperature, _, warming] = self.kept(kept, own, p);
+            return [temperature, warming];
+        }
+        let seen = self.seen(at.inputs);
+        let moved = self.input().and_then(|input| told.input(input, own.count));
+        let [by_value, by_rate] = moved.map_or([0.0; 2], |of| of.map(|block| block[p]));
+        [Dual { value: seen.value, slope: by_value }, Dual { value: seen.rate, slope: by_rate }]
+    }
+
+    /// What changes of a point as the law itself is told it, at these temperatures.
+    fn told_point(
+        &self,
+        at: &Point,
+        told: &PointVariation,
+        numbers: &[Numbers],
+        temperatures: impl Fn(usize) -> [Dual; 2],
+    ) -> Told {
+        let mut inside = Told::default();
+        let count = numbers.len();
+        let each: Vec<Seen> = (0..count)
+            .map(|p| {
+                let [temperature, warming] = temperatures(p);
+                let stroke = Dual { value: at.stroke, slope: told.stroke[p] };
+                let rate = Dual { value: at.rate, slope: told.rate[p] };
+                let inputs = told.inputs_of(at, p, count).into_iter();
+                self.see(&numbers[p], [stroke, rate, temperature, warming], inputs)
+            })
+            .collect();
+        push_inputs(&mut inside, &each);
+        each.into_iter().for_each(|seen| inside.push(seen));
+        inside
+    }
+
+    /// Splits off the share of the heat.
+    fn take_own<'a>(&self, own: &mut VariationRef<'a>) -> VariationRef<'a> {
+        own.take(self.heat.numbers().len(), self.own_size())
+    }
+}
+
+/// Blocks of the inputs of one point, input by input.
+fn push_inputs(inside: &mut Told, each: &[Seen]) {
+    let inputs = each.first().map_or(0, |seen| seen.inputs.len());
+    let [values, rates] = &mut inside.inputs;
+    for i in 0..inputs {
+        values.extend(each.iter().map(|seen| seen.inputs[i].value.slope));
+        rates.extend(each.iter().map(|seen| seen.inputs[i].rate.slope));
     }
 }
 
 impl Vary for Heated {
-    /// None is known of a temperature that follows from the losses.
-    fn without_derivatives(&self) -> Option<String> {
-        match self.heat.thermal {
-            Some(_) => Some("a temperature that follows from losses".to_owned()),
-            None if self.size().memories > 0 => Some("a springpot under heat".to_owned()),
-            None => self.law.without_derivatives(),
-        }
+    fn numbers(&self, take: &mut dyn FnMut(Dual)) {
+        let numbers = self.heat.numbers().into_iter().zip(self.moved.numbers());
+        numbers.for_each(|(value, slope)| take(Dual { value, slope }));
+        self.law.ask().numbers(take);
+    }
+
+    fn begin_memories(
+        &self,
+        state: &mut StateRef,
+        own: &mut VariationRef,
+        memories: &mut Vec<crate::fractional::MemoryTangent>,
+    ) -> Result<(), crate::fractional::KernelError> {
+        state.take(self.own_size());
+        self.take_own(own);
+        self.law.ask().begin_memories(state, own, memories)
     }
 
     fn begin_variation(&self, at: &Point, state: &mut StateRef, told: &PointVariation, own: &mut VariationMut) {
         let kept = self.own(state.take(self.own_size()).variables, at.t);
-        own.take(0, self.own_size());
+        let share = own.take(self.heat.numbers().len(), self.own_size());
+        let numbers = self.all_numbers(&share.view());
+        let clock = usize::from(self.heat.shift.is_some());
+        if let Some(thermal) = &self.heat.thermal {
+            for (p, Numbers { thermal: [capacity, conductance, ambient, start], .. }) in numbers.iter().enumerate() {
+                let warming = -(*conductance * (*start - *ambient)) / *capacity;
+                debug_assert!(start.value == thermal.start);
+                share.variables[clock * share.count + p] = start.slope;
+                share.variables[(clock + 2) * share.count + p] = warming.slope;
+            }
+        }
         let place = self.place(at, kept.xi, self.temperature(&kept, at.inputs));
-        let inside = self.told_inside(told.rate, told.inputs, (&[place.factor], at.inputs.len(), own.count));
-        self.law.ask().begin_variation(&place.point(), state, &inside.point(told), own);
+        let view = share.view();
+        let inside = self.told_point(at, told, &numbers, |p| self.temperature_now(&kept, at, told, (&view, p)));
+        self.law.ask().begin_variation(&place.point(), state, &inside.point(None), own);
     }
 
     /// Of what a temperature moves nothing is told.
@@ -101,6 +432,7 @@ impl Vary for Heated {
         false
     }
 
+    /// The temperature changes with strokes and rates at the nodes too: a state of that is asked again once what changes of those is known.
     fn vary(
         &self,
         step: &Step,
@@ -109,25 +441,106 @@ impl Vary for Heated {
         own: &mut VariationRef,
         forces: &mut [f64],
     ) {
-        own.take(0, self.own_size());
-        let Some((_, _, inside)) = self.look(step, state) else {
+        let whole = *own;
+        let numbers = self.all_numbers(&self.take_own(own));
+        let Some((kept, course, inside)) = self.look(step, state) else {
             forces.fill(f64::NAN);
             return self.law.ask().pass(state);
         };
-        let changes = self.told_step(step, &inside, told);
-        self.law.ask().vary(&inside.step(step), state, &changes.step(told), own, forces);
-        changes.mark(forces, told.count);
+        let warmed = self.warmed(step, &kept, &course, &inside, *state, told, (&whole, &numbers));
+        let (count, inner) = (told.count, inside.step(step));
+        let changes = self.told_inside(step, &warmed, told, &numbers, true);
+        if changes.stroke[count..].iter().chain(&changes.rate[count..]).any(|change| *change != 0.0) {
+            let mut response = Response::default();
+            self.law.ask().evaluate(&inner, &mut state.clone(), &mut response);
+            for (i, forces) in forces.chunks_exact_mut(count).enumerate() {
+                for j in 0..step.nodes.count() {
+                    let block = (j + 1) * count..(j + 2) * count;
+                    add(forces, response.d_stroke[i][j], &changes.stroke[block.clone()]);
+                    add(forces, response.d_rate[i][j], &changes.rate[block]);
+                }
+            }
+        }
+        self.law.ask().vary(&inner, state, &changes.step(count), own, forces);
+    }
+
+    fn vary_singular(
+        &self,
+        step: &Step,
+        state: &mut StateRef,
+        told: &StepVariation,
+        own: &mut VariationRef,
+        forces: &mut [f64],
+    ) {
+        let whole = *own;
+        let numbers = self.all_numbers(&self.take_own(own));
+        let Some((kept, course, inside)) = self.look(step, state) else { return self.law.ask().pass(state) };
+        let warmed = self.warmed(step, &kept, &course, &inside, *state, told, (&whole, &numbers));
+        let changes = self.told_inside(step, &warmed, told, &numbers, false);
+        self.law.ask().vary_singular(&inside.step(step), state, &changes.step(told.count), own, forces);
+    }
+
+    /// As of the run itself: by a clock that always ran as it does now.
+    fn vary_singularity(
+        &self,
+        (from, at): (f64, &Point),
+        state: &mut StateRef,
+        told: &PointVariation,
+        own: &mut VariationRef,
+        sums: [&mut [f64]; 3],
+    ) {
+        let kept = self.own(state.take(self.own_size()).variables, at.t);
+        let share = self.take_own(own);
+        let numbers = self.all_numbers(&share);
+        let place = self.place(at, at.t, self.temperature(&kept, at.inputs));
+        let inside = self.told_point(at, told, &numbers, |p| self.temperature_now(&kept, at, told, (&share, p)));
+        let (factor, count) = (place.factor, share.count);
+        let mut inner = [(); 3].map(|()| vec![0.0; count]);
+        let [value, once, twice] = &mut inner;
+        let point = Point { t: at.t / factor, ..place.point() };
+        self.law.ask().vary_singularity((from / factor, &point), state, &inside.point(None), own, [value, once, twice]);
+        for (order, (sum, inner)) in sums.into_iter().zip(&inner).enumerate() {
+            add(sum, factor.powi(order as i32), inner);
+        }
     }
 
     fn commit_variation(&self, step: &Step, state: &mut StateRef, told: &StepVariation, own: &mut VariationMut) {
-        own.take(0, self.own_size());
-        let Some((_, _, inside)) = self.look(step, state) else {
+        let (count, clock) = (own.count, usize::from(self.heat.shift.is_some()));
+        let Some((kept, course, inside)) = self.look(step, state) else {
             own.variables.fill(f64::NAN);
             return self.law.ask().pass(state);
         };
-        let changes = self.told_step(step, &inside, told);
-        self.law.ask().commit_variation(&inside.step(step), state, &changes.step(told), &mut own.reborrow());
-        changes.mark(own.variables, told.count);
+        let (changes, warmed, numbers, starts) = {
+            let mut view = own.view();
+            let whole = view;
+            let share = self.take_own(&mut view);
+            let numbers = self.all_numbers(&share);
+            let warmed = self.warmed(step, &kept, &course, &inside, *state, told, (&whole, &numbers));
+            let starts: Vec<[Dual; 4]> = (0..count).map(|p| self.kept(&kept, &share, p)).collect();
+            (self.told_inside(step, &warmed, told, &numbers, false), warmed, numbers, starts)
+        };
+        let share = own.take(self.heat.numbers().len(), self.own_size());
+        let (nodes, matrix) = (step.nodes.count(), step.matrix());
+        let weights = match step.nodes {
+            Nodes::Midpoint => [1.0, 0.0, 0.0, 0.0],
+            _ => matrix[nodes - 1],
+        };
+        for (p, [xi, temperature, lost, _]) in starts.into_iter().enumerate() {
+            let mut put = |k: usize, value: f64| share.variables[k * count + p] = value;
+            if clock == 1 {
+                let passed = changes.passed.as_ref().map_or(0.0, |passed| passed[(nodes - 1) * count + p]);
+                put(0, xi.slope + passed);
+            }
+            if self.heat.thermal.is_some() {
+                let [_, conductance, ambient, _] = numbers[p].thermal;
+                let over = |of: &dyn Fn(usize) -> f64| step.h * (0..nodes).map(|j| weights[j] * of(j + 1)).sum::<f64>();
+                put(clock, temperature.slope + over(&|k| warmed[p].warming[k].slope));
+                let flow = |k: usize| (conductance * (warmed[p].temperature[k] - ambient)).slope;
+                put(clock + 1, lost.slope + over(&flow));
+                put(clock + 2, warmed[p].warming[nodes].slope);
+            }
+        }
+        self.law.ask().commit_variation(&inside.step(step), state, &changes.step(count), own);
     }
 
     fn vary_powers(
@@ -138,21 +551,32 @@ impl Vary for Heated {
         own: &mut VariationRef,
         sum: &mut PowersVariation,
     ) {
-        own.take(0, self.own_size());
-        let kept = self.own(state.variables, step.t);
-        let Some((_, course, inside)) = self.look(step, state) else {
+        let (whole, before) = (*own, *state);
+        let share = self.take_own(own);
+        let numbers = self.all_numbers(&share);
+        let Some((kept, course, inside)) = self.look(step, state) else {
             [&mut *sum.dissipation, &mut *sum.input].into_iter().for_each(|sum| sum.fill(f64::NAN));
             return self.law.ask().pass(state);
         };
+        let warmed = self.warmed(step, &kept, &course, &inside, *state, told, (&whole, &numbers));
         let (count, nodes, behind, own_behind) = (told.count, step.nodes.count(), *state, *own);
-        let changes = self.told_step(step, &inside, told);
-        let (inner, of_step) = (inside.step(step), changes.step(told));
+        let changes = self.told_inside(step, &warmed, told, &numbers, false);
+        let (inner, of_step) = (inside.step(step), changes.step(count));
+        let mut powers = Default::default();
+        self.law.ask().powers(&inner, &mut behind.clone(), &mut powers);
         let mut flows = [(); 2].map(|()| vec![0.0; (nodes + 1) * count]);
         let [dissipation, input] = &mut flows;
         self.law.ask().vary_powers(&inner, state, &of_step, own, &mut PowersVariation { dissipation, input });
-        for (sum, flows) in [&mut *sum.dissipation, &mut *sum.input].into_iter().zip(&flows) {
-            for (k, (sum, flow)) in sum.chunks_exact_mut(count).zip(flows.chunks_exact(count)).enumerate() {
-                add(sum, inside.clock.factor[k].recip(), flow);
+        for k in 0..=nodes {
+            let factor = inside.clock.factor[k];
+            for p in 0..count {
+                let ln = match &self.heat.shift {
+                    Some(shift) => numbers[p].ln_factor(shift, warmed[p].temperature[k])[0].slope,
+                    None => 0.0,
+                };
+                let at = k * count + p;
+                sum.dissipation[at] += (flows[0][at] - powers[k].dissipation * ln) / factor;
+                sum.input[at] += (flows[1][at] - powers[k].input * ln) / factor;
             }
         }
         if self.heat.expansion.is_some() {
@@ -161,17 +585,21 @@ impl Vary for Heated {
             self.law.ask().evaluate(&inner, &mut behind.clone(), &mut response);
             let mut forces = vec![0.0; (nodes + 1) * count];
             let (start, rest) = forces.split_at_mut(count);
-            let of_inputs = told.inputs.map(|blocks| blocks.get(..step.inputs_at(0).len() * count).unwrap_or_default());
-            let of_start =
-                PointVariation { stroke: told.stroke_at(0), rate: told.rate_at(0), inputs: of_inputs, step: None };
             let at = step.point(0);
             let place = self.place(&at, kept.xi, self.temperature(&kept, at.inputs));
-            let of_place = self.told_inside(of_start.rate, of_start.inputs, (&[place.factor], at.inputs.len(), count));
+            let inputs = self.inputs + usize::from(self.tells_factor);
+            let of_inputs = changes.inputs.each_ref().map(|blocks| blocks.get(..inputs * count).unwrap_or_default());
+            let of_start = PointVariation {
+                stroke: of_step.stroke_at(0),
+                rate: of_step.rate_at(0),
+                inputs: of_inputs,
+                step: None,
+                passed: None,
+            };
             let mut spare = vec![0.0; count];
             let mut at_start = ObservationVariation { force: start, stored: &mut spare };
             let when = (When::Between, &place.point());
-            let told_at_start = of_place.point(&of_start);
-            self.law.ask().vary_at(when, &mut behind.clone(), &told_at_start, &mut own_behind.clone(), &mut at_start);
+            self.law.ask().vary_at(when, &mut behind.clone(), &of_start, &mut own_behind.clone(), &mut at_start);
             self.law.ask().vary(&inner, &mut behind.clone(), &of_step, &mut own_behind.clone(), rest);
             for (i, forces) in rest.chunks_exact_mut(count).enumerate() {
                 for j in 0..nodes {
@@ -179,13 +607,16 @@ impl Vary for Heated {
                     add(forces, response.d_rate[i][j], of_step.rate_at(j + 1));
                 }
             }
-            let by_temperature = self.heat.stroke_by_temperature();
-            for (k, (sum, force)) in sum.input.chunks_exact_mut(count).zip(forces.chunks_exact(count)).enumerate() {
-                add(sum, by_temperature * course.warming[k], force);
+            let first = self.law.ask().now(&place.point(), &mut behind.clone(), &mut |_| ()).observation.regular;
+            for k in 0..=nodes {
+                let value = if k == 0 { first } else { response.force[k - 1] - response.singular[k - 1] };
+                for p in 0..count {
+                    let force = Dual { value, slope: forces[k * count + p] };
+                    sum.input[k * count + p] += (force * numbers[p].by_temperature() * warmed[p].warming[k]).slope;
+                }
             }
         }
-        changes.mark(sum.dissipation, count);
-        changes.mark(sum.input, count);
+        debug_assert!(before.variables.len() >= self.own_size().variables);
     }
 
     fn vary_at(
@@ -196,30 +627,52 @@ impl Vary for Heated {
         own: &mut VariationRef,
         sum: &mut ObservationVariation,
     ) {
-        own.take(0, self.own_size());
-        let count = own.count;
+        let whole = *own;
+        let share = self.take_own(own);
+        let numbers = self.all_numbers(&share);
         let (When::Within(step, theta), Some(around)) = (when, &told.step) else {
             let kept = self.own(state.take(self.own_size()).variables, at.t);
             let place = self.place(at, kept.xi, self.temperature(&kept, at.inputs));
-            let inside = self.told_inside(told.rate, told.inputs, (&[place.factor], at.inputs.len(), count));
-            self.law.ask().vary_at((When::Between, &place.point()), state, &inside.point(told), own, sum);
-            inside.mark(sum.force, count);
-            return inside.mark(sum.stored, count);
+            let inside = self.told_point(at, told, &numbers, |p| self.temperature_now(&kept, at, told, (&share, p)));
+            return self.law.ask().vary_at((When::Between, &place.point()), state, &inside.point(None), own, sum);
         };
-        let Some((kept, _, inside)) = self.look(step, state) else {
+        let Some((kept, course, inside)) = self.look(step, state) else {
             sum.force.fill(f64::NAN);
             return self.law.ask().pass(state);
         };
-        let share = inside.clock.share(theta);
-        let place = self.place(at, kept.xi + share * inside.clock.h, self.seen(at.inputs));
-        let (of_step, of_point) = (
-            self.told_step(step, &inside, around),
-            self.told_inside(told.rate, told.inputs, (&[place.factor], at.inputs.len(), count)),
+        let warmed = self.warmed(step, &kept, &course, &inside, *state, around, (&whole, &numbers));
+        let (fraction, temperature) = (
+            inside.clock.share(theta),
+            match self.heat.thermal {
+                None => self.seen(at.inputs),
+                Some(_) => self.within(step, theta, &kept, &course),
+            },
         );
-        let told = PointVariation { step: Some(of_step.step(around)), ..of_point.point(told) };
-        let inner = inside.step(step);
-        self.law.ask().vary_at((When::Within(&inner, share), &place.point()), state, &told, own, sum);
-        of_point.mark(sum.force, count);
-        of_point.mark(sum.stored, count);
+        let place = self.place(at, kept.xi + fraction * inside.clock.h, temperature);
+        let of_step = self.told_inside(step, &warmed, around, &numbers, false);
+        let quadrature = step.quadrature(theta);
+        let mut of_point = self.told_point(at, told, &numbers, |p| {
+            if self.heat.thermal.is_none() {
+                return self.temperature_now(&kept, at, told, (&share, p));
+            }
+            let own = &warmed[p];
+            let moved: f64 = quadrature.iter().zip(&own.warming).map(|(weight, rate)| weight * rate.slope).sum();
+            let rate = match step.nodes {
+                Nodes::Radau => {
+                    let at = |k: usize| lagrange_row(k).iter().rev().fold(0.0, |sum, c| sum * theta + c);
+                    own.warming.iter().enumerate().take(4).map(|(k, rate)| at(k) * rate.slope).sum()
+                }
+                _ => own.warming[step.nodes.count()].slope,
+            };
+            let [_, start, ..] = self.kept(&kept, &share, p);
+            [
+                Dual { value: temperature.value, slope: start.slope + step.h * moved },
+                Dual { value: temperature.rate, slope: rate },
+            ]
+        });
+        of_point.passed = self.passed(step, &warmed, &numbers, Some(theta));
+        let (inner, count) = (inside.step(step), share.count);
+        let told = of_point.point(Some(of_step.step(count)));
+        self.law.ask().vary_at((When::Within(&inner, fraction), &place.point()), state, &told, own, sum);
     }
 }

@@ -101,7 +101,11 @@ impl Heated {
 }
 
 /// (I + `factor` A)⁻¹ over the leading `count` rows.
-fn implicit(matrix: &[[f64; MAX_NODES]; MAX_NODES], factor: f64, count: usize) -> [[f64; MAX_NODES]; MAX_NODES] {
+pub(super) fn implicit(
+    matrix: &[[f64; MAX_NODES]; MAX_NODES],
+    factor: f64,
+    count: usize,
+) -> [[f64; MAX_NODES]; MAX_NODES] {
     let mut system = [[0.0; 2 * MAX_NODES]; MAX_NODES];
     for i in 0..count {
         (0..count).for_each(|j| system[i][j] = factor * matrix[i][j]);

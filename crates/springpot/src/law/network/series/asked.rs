@@ -142,6 +142,23 @@ impl Asked {
         Self { way, bent: None, nodes, h: theta * step.h, stroke, inputs: Some(inputs) }
     }
 
+    /// Whether it follows from strokes alone.
+    pub(super) fn is_of_strokes(&self) -> bool {
+        matches!(self.way, Way::Same | Way::Strokes)
+    }
+
+    /// d/dθ of what the values at the nodes of the parts are at θ of the step.
+    pub(super) fn slope(values: &[f64; MAX_NODES], theta: f64) -> f64 {
+        let nodes = inner::NODES;
+        let others = |of: &[usize]| (0..MAX_NODES).filter(|j| !of.contains(j)).collect::<Vec<_>>();
+        let slope = |m: usize| -> f64 {
+            let factor = |j: &usize| (theta - nodes[*j]) / (nodes[m] - nodes[*j]);
+            let without = |j: usize| others(&[m, j]).iter().map(factor).product::<f64>() / (nodes[m] - nodes[j]);
+            others(&[m]).into_iter().map(without).sum()
+        };
+        values.iter().enumerate().map(|(m, value)| slope(m) * value).sum()
+    }
+
     /// The step as the parts see it, but for strokes and rates, which are not theirs.
     pub(super) fn step<'a>(&'a self, outer: &Step<'a>) -> Step<'a> {
         let Self { nodes, h, ref stroke, ref inputs, .. } = *self;

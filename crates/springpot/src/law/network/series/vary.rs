@@ -12,12 +12,13 @@ use super::{Matrix, Series, Settled, Values, is_near, vary_start};
 use crate::collocation::inner::TABLEAU_OF_FOUR;
 use crate::collocation::{MAX_NODES, Nodes};
 use crate::dual::Dual;
+use crate::fractional::RatePolynomial;
 use crate::law::leaf::When;
 use crate::law::network::MOST_IN_SERIES;
 use crate::law::network::part::Part;
 use crate::law::network::vary::Vary;
 use crate::law::state::StateRef;
-use crate::law::step::{Course, InputValue, Point, Response, Step};
+use crate::law::step::{Course, InputValue, Point, Power, Powers, Response, Step};
 use crate::law::variation::{
     AtNodes, ObservationVariation, PointVariation, PowersVariation, StepVariation, VariationMut, VariationRef, add,
 };
@@ -34,6 +35,8 @@ struct Changes {
     moved: Vec<Moved>,
     nodes: usize,
     inputs: [Vec<f64>; 2],
+    /// Of the time that has passed until the nodes.
+    passed: Option<Vec<f64>>,
 }
 
 impl Changes {
@@ -47,7 +50,7 @@ impl Changes {
 
     fn told<'a>(&'a self, [stroke, rate]: &'a [Vec<f64>; 2]) -> StepVariation<'a> {
         let inputs = self.inputs.each_ref().map(Vec::as_slice);
-        StepVariation { count: self.moved.len(), stroke, rate, inputs }
+        StepVariation { count: self.moved.len(), stroke, rate, inputs, passed: self.passed.as_deref() }
     }
 }
 
@@ -56,15 +59,91 @@ struct Looked {
     asked: Asked,
     solved: Solved,
     changes: Changes,
+    clock: Option<Clock>,
+}
+
+impl Looked {
+    /// What changes of a quantity at the start and at the nodes of the parts, which is `values` there, at those of the whole, by parameter `p`.
+    fn outer(&self, step: &Step, values: impl Fn() -> Values, changes: &Values, p: usize) -> Values {
+        let mut outer = self.asked.outer(changes);
+        if let Some(clock) = &self.clock {
+            let count = clock.h.len();
+            let [_, at_nodes @ ..] = values();
+            for (i, theta) in step.positions().iter().enumerate() {
+                outer[i + 1] += Asked::slope(&at_nodes, *theta) * clock.theta[i * count + p];
+            }
+        }
+        outer
+    }
 }
 
 /// How many numbers a part has.
 pub(super) fn number_count(part: &dyn Vary) -> usize {
     let mut count = 0;
-    part.for_each_leaf(&mut |leaf| {
-        leaf.numbers(&mut |_| count += 1);
-    });
+    part.numbers(&mut |_| count += 1);
     count
+}
+
+/// What a clock that parameters move changes of a step: its nodes, as shares of it, and its size.
+struct Clock {
+    /// Of θ at the nodes, s blocks.
+    theta: Vec<f64>,
+    /// Of h, a block.
+    h: Vec<f64>,
+    /// Of θ at the place in it that is asked for, a block.
+    here: Vec<f64>,
+    /// x' over the step as the parts are told it.
+    polynomial: RatePolynomial,
+}
+
+impl Clock {
+    fn of(step: &Step, told: &StepVariation, asked: &Asked, until: Option<(f64, &PointVariation)>) -> Option<Self> {
+        let (passed, count) = (told.passed?, told.count);
+        let h = passed[passed.len() - count..].to_vec();
+        let moved = |own: f64, theta: f64, h: f64| (own - theta * h) / step.h;
+        let of_node = |(own, theta): (&[f64], &f64)| -> Vec<f64> {
+            own.iter().zip(&h).map(|(own, h)| moved(*own, *theta, *h)).collect()
+        };
+        let theta = passed.chunks_exact(count).zip(step.positions()).flat_map(of_node).collect();
+        let here = until.map_or_else(Vec::new, |(theta, told)| {
+            let own = told.passed.map_or_else(|| vec![0.0; count], <[f64]>::to_vec);
+            own.iter().zip(&h).map(|(own, h)| moved(*own, theta, *h)).collect()
+        });
+        let polynomial = match (asked.is_of_strokes(), step.places) {
+            (true, None) => RatePolynomial::through_strokes(step.h, step.nodes, step.stroke),
+            (true, Some(places)) => RatePolynomial::through_strokes_at(step.h, places, step.stroke),
+            (false, None) => RatePolynomial::through_rates(step.h, step.nodes, step.rate),
+            (false, Some(places)) => RatePolynomial::through_rates_at(step.h, places, step.rate),
+        };
+        Some(Self { theta, h, here, polynomial })
+    }
+
+    /// Strokes, rates and inputs at the nodes as they change at these shares of the step, in units of its size; nothing of what is told of the nodes
+    /// where these stay.
+    fn at_shares(&self, step: &Step, told: &StepVariation, at_nodes: AtNodes) -> [Vec<f64>; 3] {
+        let (count, inputs) = (told.count, step.inputs_at(0).len());
+        let [mut stroke, mut rate, mut input] = [told.stroke.to_vec(), told.rate.to_vec(), told.inputs[0].to_vec()];
+        if at_nodes == AtNodes::Still {
+            stroke[count..].fill(0.0);
+            rate[count..].fill(0.0);
+        }
+        for k in 0..=step.nodes.count() {
+            let at = if k == 0 { 0.0 } else { step.positions()[k - 1] };
+            for p in 0..count {
+                let (theta, h) = (if k == 0 { 0.0 } else { self.theta[(k - 1) * count + p] }, self.h[p]);
+                let block = k * count + p;
+                stroke[block] -= step.h * self.polynomial.rate(at) * theta;
+                let own = step.rate.get(k).copied().unwrap_or(0.0);
+                rate[block] += own * h / step.h - step.h * self.polynomial.bend(at) * theta;
+                for (i, value) in step.inputs_at(k).iter().enumerate() {
+                    if let Some(input) = input.get_mut((k * inputs + i) * count + p) {
+                        *input -= step.h * value.rate * theta;
+                    }
+                }
+            }
+        }
+        [stroke, rate, input]
+    }
 }
 
 /// Hands over the step whose strokes, rates and inputs are what parameter `p` changes of `step`: what is asked of a step is linear in them.
@@ -100,22 +179,46 @@ impl Series {
         let asked = ask(step, until.map(|(theta, at, _)| (theta, at)));
         let (strokes, _) = self.own(state);
         let solved = solve(self, &asked.step(step), strokes, ready, *state, Sought::Fit);
+        let until_here = until.filter(|(theta, ..)| *theta < 1.0);
+        let clock = Clock::of(step, told, &asked, until_here.map(|(theta, _, told)| (theta, told)));
+        let at_shares = clock.as_ref().map(|clock| clock.at_shares(step, told, at_nodes));
+        let (told, at_nodes) = match &at_shares {
+            Some([stroke, rate, values]) => {
+                (&StepVariation { stroke, rate, inputs: [values, told.inputs[1]], ..*told }, AtNodes::AsTold)
+            }
+            None => (told, at_nodes),
+        };
         let column = |p: usize| {
             of_changes(step, told, p, at_nodes, |changes| {
                 let inputs: Vec<InputValue> = until.map_or_else(Vec::new, |(_, at, told)| {
                     told.inputs_of(at, p, own.count).iter().map(slopes).collect()
                 });
+                let here = clock.as_ref().and_then(|clock| Some((clock, *clock.here.get(p)?)));
+                let along = |theta: f64| here.map_or(0.0, |(clock, here)| step.h * clock.polynomial.rate(theta) * here);
                 let at = until.map(|(theta, at, told)| {
-                    (theta, Point { t: at.t, stroke: told.stroke[p], rate: told.rate[p], inputs: &inputs })
+                    let stroke = told.stroke[p] - along(theta);
+                    (theta, Point { t: at.t, stroke, rate: told.rate[p], inputs: &inputs })
                 });
-                let asked = ask(changes, at.as_ref().map(|(theta, at)| (*theta, at)));
+                let mut asked = ask(changes, at.as_ref().map(|(theta, at)| (*theta, at)));
+                if let Some((theta, ..)) = until_here {
+                    // The places of the nodes move with the end.
+                    for (stroke, c) in asked.stroke[1..].iter_mut().zip(asked.nodes.positions()) {
+                        *stroke += c * along(theta * c);
+                    }
+                }
                 let inputs = asked.step(changes).inputs.to_vec();
                 (asked.stroke, inputs)
             })
         };
         let columns: Vec<(Values, Vec<InputValue>)> = (0..own.count).map(column).collect();
-        let changes = self.changes(&asked.step(step), &solved, &columns, *state, own);
-        Looked { asked, solved, changes }
+        let of_size = clock.as_ref().map(|clock| match until_here {
+            Some((theta, ..)) => {
+                clock.h.iter().zip(&clock.here).map(|(h, here)| theta * h + step.h * here).collect::<Vec<f64>>()
+            }
+            None => clock.h.clone(),
+        });
+        let changes = self.changes(&asked.step(step), &solved, &columns, of_size.as_deref(), *state, own);
+        Looked { asked, solved, changes, clock }
     }
 
     /// What changes of the parts in a step as they are told it, where the stroke of the whole and the inputs change as the columns say.
@@ -124,6 +227,7 @@ impl Series {
         step: &Step,
         Solved { inner, force, tangent, .. }: &Solved,
         columns: &[(Values, Vec<InputValue>)],
+        of_size: Option<&[f64]>,
         mut state: StateRef,
         mut own: VariationRef,
     ) -> Changes {
@@ -136,6 +240,10 @@ impl Series {
         let mut lines = Lines::default();
         lines.look(self, inner, step, state);
         lines.turn(self, nodes);
+        let passed: Option<Vec<f64>> = of_size.map(|of_size| {
+            let of_node = |c: &f64| of_size.iter().map(|h| c * h).collect::<Vec<f64>>();
+            step.nodes.positions().iter().flat_map(of_node).collect()
+        });
         let starts = own.take(0, self.own_size());
         // What changes of each part where its strokes at the nodes stay, and the slopes of friction.
         let mut explicit: Vec<Vec<f64>> = Vec::with_capacity(self.parts.len());
@@ -146,8 +254,13 @@ impl Series {
             part.ask().evaluate(&told, &mut state.clone(), &mut response);
             let mut stroke = still.clone();
             stroke[..count].copy_from_slice(starts.variable(k));
-            let changes =
-                StepVariation { count, stroke: &stroke, rate: &still, inputs: inputs.each_ref().map(Vec::as_slice) };
+            let changes = StepVariation {
+                count,
+                stroke: &stroke,
+                rate: &still,
+                inputs: inputs.each_ref().map(Vec::as_slice),
+                passed: passed.as_deref(),
+            };
             let mut forces = vec![0.0; nodes * count];
             part.ask().vary(&told, &mut state, &changes, &mut own, &mut forces);
             if self.slides(k) {
@@ -160,6 +273,9 @@ impl Series {
                 for (forces, by_rate) in forces.chunks_exact_mut(count).zip(response.d_rate) {
                     let follows: f64 = (0..nodes).map(|j| by_rate[j] * by_start.rate[j + 1]).sum();
                     add(forces, follows, starts.variable(k));
+                    // And the size of the step.
+                    let by_size: f64 = (0..nodes).map(|j| -by_rate[j] * inner.rate[j + 1] / step.h).sum();
+                    of_size.into_iter().for_each(|of_size| add(forces, by_size, of_size));
                 }
             }
             explicit.push(forces);
@@ -231,13 +347,22 @@ impl Series {
                         asked[i + 1] - others.map(|k| moved.inner[k].stroke[i + 1]).sum::<f64>();
                 }
             }
-            moved.inner.iter_mut().take(self.parts.len()).for_each(|inner| inner.take_rates(step.nodes, step.h));
+            for (moved, inner) in moved.inner.iter_mut().zip(inner).take(self.parts.len()) {
+                moved.take_rates(step.nodes, step.h);
+                let shorter = of_size.map_or(0.0, |of_size| of_size[p] / step.h);
+                moved.rate.iter_mut().zip(inner.rate).for_each(|(moved, rate)| *moved -= shorter * rate);
+            }
+            if friction.is_some() && of_size.is_some_and(|of_size| of_size[p] != 0.0) {
+                // How what slides goes on by another clock is not known.
+                moved.force.fill(f64::NAN);
+                moved.inner.iter_mut().for_each(|inner| inner.stroke.fill(f64::NAN));
+            }
             if let Some(k) = friction {
                 moved.inner[k].rate[1..=nodes].copy_from_slice(&rates[..nodes]);
             }
             moved
         };
-        Changes { moved: columns.iter().enumerate().map(moved).collect(), nodes, inputs }
+        Changes { moved: columns.iter().enumerate().map(moved).collect(), nodes, inputs, passed }
     }
 
     /// C of each part; of a play where it carries, of friction none.
@@ -333,11 +458,12 @@ impl Series {
     fn change_between(
         &self,
         step: &Step,
-        theta: f64,
+        (theta, here): (f64, Option<&[f64]>),
         mut state: StateRef,
         told: &StepVariation,
         own: VariationRef,
     ) -> Vec<f64> {
+        let before = state;
         let mut behind = state;
         behind.take_ready();
         let (strokes, _) = self.own(&mut behind);
@@ -347,15 +473,27 @@ impl Series {
             rate: told.rate_at(0),
             inputs: told.inputs.map(|blocks| blocks.get(..at.inputs.len() * count).unwrap_or_default()),
             step: None,
+            passed: None,
         };
         let (start, _) = self.change_now(&at, strokes, behind, &of_start, own);
-        let Looked { changes, .. } = self.look(step, &mut state, (told, AtNodes::AsTold), None, own);
-        let at_theta = |(start, Moved { force, .. }): (f64, &Moved)| {
+        let looked = self.look(step, &mut state, (told, AtNodes::AsTold), None, own);
+        let through = |start: f64, force: &[f64; MAX_NODES]| {
             let values = [start, force[0], force[1], force[2], force[3]];
-            let of = |row: &Values| row.iter().zip(values).map(|(weight, value)| weight * value).sum::<f64>();
-            TABLEAU_OF_FOUR.values.iter().rev().fold(0.0, |sum, row| sum * theta + of(row))
+            TABLEAU_OF_FOUR.values.map(|row| row.iter().zip(values).map(|(weight, value)| weight * value).sum::<f64>())
         };
-        start.into_iter().zip(&changes.moved).map(at_theta).collect()
+        // How the force itself goes on there, where the clock moves the place.
+        let along = here.filter(|_| looked.clock.is_some()).map_or(0.0, |_| {
+            let first = self.now(&at, &mut before.clone(), &mut |_| ()).observation.regular;
+            let [_, rows @ ..] = through(first, &looked.solved.force);
+            rows.iter().enumerate().rev().fold(0.0, |sum, (p, row)| sum * theta + (p + 1) as f64 * row)
+        });
+        let at_theta = |(p, (start, Moved { force, .. })): (usize, (f64, &Moved))| {
+            let value = through(start, force).iter().rev().fold(0.0, |sum, row| sum * theta + row);
+            let moved =
+                here.zip(looked.clock.as_ref()).map_or(0.0, |(here, clock)| (here[p] - theta * clock.h[p]) / step.h);
+            value + along * moved
+        };
+        start.into_iter().zip(&looked.changes.moved).enumerate().map(at_theta).collect()
     }
 }
 
@@ -386,10 +524,11 @@ impl Vary for Series {
         forces: &mut [f64],
     ) {
         let share = own.take(number_count(self), self.size());
-        let Looked { asked, changes, .. } = self.look(step, state, (told, AtNodes::Still), None, share);
+        let looked = self.look(step, state, (told, AtNodes::Still), None, share);
         self.parts.iter().for_each(|part| part.ask().pass(state));
-        for (p, Moved { force, .. }) in changes.moved.iter().enumerate() {
-            let outer = asked.outer(&[0.0, force[0], force[1], force[2], force[3]]);
+        let at_nodes = |[a, b, c, d]: [f64; MAX_NODES]| [0.0, a, b, c, d];
+        for (p, Moved { force, .. }) in looked.changes.moved.iter().enumerate() {
+            let outer = looked.outer(step, || at_nodes(looked.solved.force), &at_nodes(*force), p);
             for (forces, outer) in forces.chunks_exact_mut(share.count).zip(&outer[1..]) {
                 forces[p] += outer;
             }
@@ -399,7 +538,7 @@ impl Vary for Series {
     fn commit_variation(&self, step: &Step, state: &mut StateRef, told: &StepVariation, own: &mut VariationMut) {
         let mut share = own.take(number_count(self), self.size());
         let count = share.count;
-        let Looked { asked, solved, changes } = self.look(step, state, (told, AtNodes::AsTold), None, share.view());
+        let Looked { asked, solved, changes, .. } = self.look(step, state, (told, AtNodes::AsTold), None, share.view());
         let (step, strokes) = (asked.step(step), share.take(0, self.own_size()).variables);
         for (k, (part, inner)) in self.parts.iter().zip(&solved.inner).enumerate() {
             let blocks = changes.blocks(k);
@@ -424,21 +563,30 @@ impl Vary for Series {
     ) {
         let mut share = own.take(number_count(self), self.size());
         let count = share.count;
-        let Looked { asked, solved, changes } = self.look(step, state, (told, AtNodes::AsTold), None, share);
+        let looked = self.look(step, state, (told, AtNodes::AsTold), None, share);
+        let Looked { asked, solved, changes, clock } = &looked;
         share.take(0, self.own_size());
-        let outer_nodes = step.nodes.count();
-        let step = asked.step(step);
+        let (outer_nodes, outer_step) = (step.nodes.count(), step);
+        let (step, behind) = (asked.step(step), *state);
         let mut inside = [(); 2].map(|()| vec![0.0; (step.nodes.count() + 1) * count]);
         for (k, (part, inner)) in self.parts.iter().zip(&solved.inner).enumerate() {
             let (blocks, [dissipation, input]) = (changes.blocks(k), &mut inside);
             let mut sum = PowersVariation { dissipation, input };
             part.ask().vary_powers(&inner.step(&step), state, &changes.told(&blocks), &mut share, &mut sum);
         }
-        for (sum, inside) in [&mut *sum.dissipation, &mut *sum.input].into_iter().zip(&inside) {
+        let mut powers = Powers::default();
+        if clock.is_some() {
+            let mut behind = behind;
+            for (part, inner) in self.parts.iter().zip(&solved.inner) {
+                part.ask().powers(&inner.step(&step), &mut behind, &mut powers);
+            }
+        }
+        let own: [fn(&Power) -> f64; 2] = [|power| power.dissipation, |power| power.input];
+        for ((sum, inside), own) in [&mut *sum.dissipation, &mut *sum.input].into_iter().zip(&inside).zip(own) {
             for p in 0..count {
                 let mut values = Values::default();
                 values.iter_mut().zip(inside.iter().skip(p).step_by(count)).for_each(|(value, own)| *value = *own);
-                let outer = asked.outer(&values);
+                let outer = looked.outer(outer_step, || powers.each_ref().map(own), &values, p);
                 (0..=outer_nodes).for_each(|k| sum[k * count + p] += outer[k]);
             }
         }
@@ -476,7 +624,8 @@ impl Vary for Series {
             _ => None,
         };
         let Some((step, theta, around)) = within.filter(|(step, theta, _)| !is_near(step, *theta)) else {
-            let force = within.map(|(step, theta, around)| self.change_between(step, theta, *state, around, share));
+            let force = within
+                .map(|(step, theta, around)| self.change_between(step, (theta, told.passed), *state, around, share));
             state.take_ready();
             let (strokes, _) = self.own(state);
             let (now, rates) = self.change_now(at, strokes, *state, told, share);
@@ -484,9 +633,11 @@ impl Vary for Series {
             return self.stored_now(at, strokes, state, told, share, (&rates, sum.stored));
         };
         let is_between = theta < 1.0 && step.nodes == Nodes::Radau && step.course == Course::Sought;
-        let between = is_between
-            .then(|| (self.between(step, theta, *state), self.change_between(step, theta, *state, around, share)));
-        let Looked { asked, solved, changes } =
+        let between = is_between.then(|| {
+            let changes = self.change_between(step, (theta, told.passed), *state, around, share);
+            (self.between(step, theta, *state), changes)
+        });
+        let Looked { asked, solved, changes, .. } =
             self.look(step, state, (around, AtNodes::AsTold), Some((theta, at, told)), share);
         let mut of_parts = share;
         of_parts.take(0, self.own_size());
@@ -500,6 +651,7 @@ impl Vary for Series {
                 rate: &blocks[1][end],
                 inputs: told.inputs,
                 step: Some(changes.told(&blocks)),
+                passed: changes.passed.as_ref().map(|passed| &passed[(last - 1) * share.count..]),
             };
             let mut spare = vec![0.0; share.count];
             let mut sum = ObservationVariation { force: &mut spare, stored: sum.stored };
