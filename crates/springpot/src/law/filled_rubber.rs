@@ -31,7 +31,7 @@ pub(super) fn filled_rubber() -> Entry {
             RuleError::unless(forces.iter().all(|force| force.value > 0.0), "F_f > 0", "F_f")?;
             let mut parts = vec![Network::spring(k), Network::springpot(c, alpha, derivative)];
             for (stiffness, force) in stiffnesses.iter().zip(forces) {
-                parts.push(Network::leaf(Jenkins::new(stiffness.value, force.value)?));
+                parts.push(Network::leaf(Jenkins::new(*stiffness, *force)?));
             }
             Ok(Network::parallel(parts))
         }),

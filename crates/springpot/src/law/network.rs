@@ -626,10 +626,11 @@ fn with_one_that_slips(mut parts: Vec<Network>) -> Vec<Network> {
         _ => None,
     };
     let Some(first) = parts.iter().position(|part| slips(part).is_some()) else { return parts };
-    let compliance: f64 = parts.iter().filter_map(plain_spring).map(f64::recip).sum();
+    let one = Dual::from(1.0);
+    let compliance: Dual = parts.iter().filter_map(plain_spring).map(|stiffness| one / stiffness).sum();
     let mut whole = parts.iter().filter_map(slips).reduce(Jenkins::behind).expect("one that slips");
-    if compliance > 0.0 {
-        whole = whole.behind_spring(compliance.recip());
+    if compliance.value > 0.0 {
+        whole = whole.behind_spring(one / compliance);
     }
     let Network::Leaf(LeafPart { name, .. }) = &parts[first] else { return parts };
     parts[first] = Network::Leaf(LeafPart { name: name.clone(), leaf: Arc::new(whole) });
@@ -639,12 +640,19 @@ fn with_one_that_slips(mut parts: Vec<Network>) -> Vec<Network> {
 }
 
 /// The stiffness of a leaf that is a spring and nothing else, N/m: no memory, no input, no force at x = 0.
-fn plain_spring(part: &Network) -> Option<f64> {
+fn plain_spring(part: &Network) -> Option<Dual> {
     let Network::Leaf(leaf) = part else { return None };
     let at = Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &[] };
     let nothing = StateRef { memories: &[], variables: &[], ready: &[] };
     let is_plain = leaf.is_linear() && leaf.size() == StateSize::default();
     let Term { coefficient, order } = leaf.linearised(&at);
+    // The number that it is, with its derivative.
+    let mut stiffness = Dual::from(coefficient);
+    leaf.numbers(&mut |number| {
+        if number.value == coefficient {
+            stiffness = number;
+        }
+    });
     (is_plain && order == 0.0 && coefficient > 0.0 && Leaf::now(&**leaf, &at, nothing).force() == 0.0)
-        .then_some(coefficient)
+        .then_some(stiffness)
 }

@@ -5,8 +5,8 @@ use springpot::collocation::Nodes;
 use springpot::dual::Dual;
 use springpot::fractional::Form;
 use springpot::law::leaf::{
-    BoucWen, Coefficient, EndStop, Friction, Hysteresis, Polynomial, Preload, Source, Spencer, Stack, Stop, Viscous,
-    VoltageDrop,
+    BoucWen, Coefficient, EndStop, Friction, Hysteresis, Jenkins, Polynomial, Preload, Source, Spencer, Stack, Stop,
+    Viscous, VoltageDrop,
 };
 use springpot::law::{Catalog, Course, Derivative, Entry, Expansion, Heat, Network, PrandtlIshlinskii, Shift, Thermal};
 use std::sync::Arc;
@@ -519,6 +519,38 @@ fn clocks_that_parameters_move() {
     for (name, replay) in all {
         Replay { difference: 2e-6, rounding: 1e-6, moves_clock: true, ..replay }.check(name, 1e-7);
     }
+}
+
+#[test]
+fn springs_that_slip() {
+    let alone = |n: &[Dual]| Network::leaf(Jenkins::new(n[0], n[1]).unwrap());
+    let all = [
+        ("jenkins", Replay::new(alone, &[60.0, 1.1])),
+        (
+            "jenkins behind springs",
+            Replay::new(
+                |n| {
+                    let slips = |k, limit| Network::leaf(Jenkins::new(k, limit).unwrap());
+                    Network::series([slips(n[0], n[1]), Network::spring(n[2]), slips(n[3], n[4])])
+                },
+                &[90.0, 2.0, 200.0, 150.0, 1.1],
+            ),
+        ),
+        (
+            "filled rubber",
+            Replay::new(
+                |n| (Catalog::standard().get("filled-rubber").unwrap().build)(n, Derivative::Caputo).unwrap(),
+                &[20.0, 6.0, 0.4, 40.0, 60.0, 0.7, 1.9],
+            )
+            .by_orders(&[2]),
+        ),
+    ];
+    for (name, replay) in all {
+        // Not so far that it begins to slip within a difference.
+        Replay { difference: 1e-4, rounding: 1e-4, ..replay }.check(name, KNOWN);
+    }
+    let law = Network::series([alone(&[60.0.into(), 1.1.into()]), Network::dashpot(2.0)]);
+    assert_eq!(law.without_derivatives().unwrap(), "a spring that slips in series with what is no spring");
 }
 
 #[test]

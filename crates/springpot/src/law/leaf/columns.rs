@@ -174,7 +174,8 @@ impl<L: Columns> ByColumns for L {
 
 /// Of inner variables nothing is known where a parameter moves the clock.
 fn lose(leaf: &dyn Leaf, told: &StepVariation, blocks: &mut [f64]) {
-    if leaf.size().variables > 0 {
+    // What slips follows from strokes alone.
+    if leaf.size().variables > 0 && leaf.slips().is_none() {
         for p in told.moves_clock() {
             blocks.iter_mut().skip(p).step_by(told.count).for_each(|block| *block = f64::NAN);
         }

@@ -1,16 +1,19 @@
 //! A spring that slips: Jenkins' element.
 
+use super::columns::{ByColumns, Columns};
 use super::contract::Leaf;
 use super::kind::{LeafBuild, LeafKind};
 use crate::collocation::{MAX_NODES, Nodes};
+use crate::dual::{Dual, Real};
 use crate::fractional::KernelError;
 use crate::law::catalog::{Param, Range};
 use crate::law::network::{Guard, Holds, Network};
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
-use crate::law::step::{Observation, Point, Powers, Response, Start, Step, Term};
+use crate::law::step::{Observation, Point, Power, Powers, Response, Start, Step, Term};
 use crate::law::tangent::LeafAtRest;
 use num_complex::Complex64;
+use std::cmp::Ordering;
 use std::f64::consts::PI;
 
 /// A spring k in series with Coulomb friction F_y: F = k·(x − p), |F| ≤ F_y, where p, what has slipped, moves only as far as it must (Jenkins 1962; Iwan 1966).
@@ -19,20 +22,20 @@ use std::f64::consts::PI;
 /// matter. p is one inner variable, which follows from the strokes at the nodes alone; where it begins and ceases to slip F has a kink.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Jenkins {
-    stiffness: f64,
-    limit: f64,
+    stiffness: Dual,
+    limit: Dual,
 }
 
 /// What has slipped over a step.
-struct Slipped {
+pub struct Slipped<T = f64> {
     /// At the start and at the nodes.
-    at: [f64; MAX_NODES + 1],
+    at: [T; MAX_NODES + 1],
     /// At the end.
-    end: f64,
+    end: T,
     /// By node: the last one until there at which it slips.
     last: [Option<usize>; MAX_NODES],
     /// ∫|p'| dt.
-    way: f64,
+    way: T,
 }
 
 impl Jenkins {
@@ -40,41 +43,43 @@ impl Jenkins {
     ///
     /// # Errors
     /// [`RuleError`]: k > 0, F_y > 0.
-    pub fn new(stiffness: f64, limit: f64) -> Result<Self, RuleError> {
-        RuleError::unless(stiffness > 0.0, "k > 0", "k")?;
-        RuleError::unless(limit > 0.0, "F_y > 0", "F_y")?;
+    pub fn new(stiffness: impl Into<Dual>, limit: impl Into<Dual>) -> Result<Self, RuleError> {
+        let (stiffness, limit) = (stiffness.into(), limit.into());
+        RuleError::unless(stiffness.value > 0.0, "k > 0", "k")?;
+        RuleError::unless(limit.value > 0.0, "F_y > 0", "F_y")?;
         Ok(Self { stiffness, limit })
     }
 
     /// Both one behind the other, which is one again: 1/k = 1/k_1 + 1/k_2, and the weaker slips alone.
     pub fn behind(self, other: Self) -> Self {
-        let stiffness = (self.stiffness.recip() + other.stiffness.recip()).recip();
-        Self { stiffness, limit: self.limit.min(other.limit) }
+        let one = Dual::from(1.0);
+        let stiffness = one / (one / self.stiffness + one / other.stiffness);
+        Self { stiffness, limit: if other.limit.value < self.limit.value { other.limit } else { self.limit } }
     }
 
     /// The same with a spring `stiffness` > 0, N/m, behind it.
-    pub fn behind_spring(self, stiffness: f64) -> Self {
-        self.behind(Self { stiffness, limit: f64::INFINITY })
+    pub fn behind_spring(self, stiffness: impl Into<Dual>) -> Self {
+        self.behind(Self { stiffness: stiffness.into(), limit: f64::INFINITY.into() })
     }
 
     /// k, N/m.
     pub fn stiffness(&self) -> f64 {
-        self.stiffness
+        self.stiffness.value
     }
 
     /// F_y, N.
     pub fn limit(&self) -> f64 {
-        self.limit
+        self.limit.value
     }
 
     /// The stroke F_y/k at which it yields, m.
     pub fn yields_at(&self) -> f64 {
-        self.limit / self.stiffness
+        self.limit.value / self.stiffness.value
     }
 
     /// F where `slipped` has slipped before the stroke went to `stroke` on one way, N.
     pub fn force(&self, slipped: f64, stroke: f64) -> f64 {
-        (self.stiffness * (stroke - slipped)).clamp(-self.limit, self.limit)
+        (self.stiffness.value * (stroke - slipped)).clamp(-self.limit.value, self.limit.value)
     }
 
     /// What has slipped once the stroke has gone to `stroke` on one way, m.
@@ -104,12 +109,6 @@ impl Jenkins {
         slipped.way += (slipped.end - slipped.at[count]).abs();
         slipped
     }
-
-    fn observation(&self, at: &Point, slipped: f64) -> Observation {
-        let force = self.force(slipped, at.stroke);
-        let stored = Some(0.5 * force * force / self.stiffness);
-        Observation { derivative: at.stroke, regular: force, singular: 0.0, stored }
-    }
 }
 
 impl Leaf for Jenkins {
@@ -133,9 +132,9 @@ impl Leaf for Jenkins {
             match slipped.last[i] {
                 Some(last) if last == i => {}
                 last => {
-                    response.d_stroke[i][i] += self.stiffness;
+                    response.d_stroke[i][i] += self.stiffness.value;
                     // What slipped before follows the stroke there.
-                    last.into_iter().for_each(|last| response.d_stroke[i][last] -= self.stiffness);
+                    last.into_iter().for_each(|last| response.d_stroke[i][last] -= self.stiffness.value);
                 }
             }
         }
@@ -157,51 +156,41 @@ impl Leaf for Jenkins {
     /// F_y·|p'|: in proportion to the rate where it slips all along, and with the integral F_y·∫|p'| dt to the last bit.
     fn powers(&self, step: &Step, state: StateRef, powers: &mut Powers) {
         let slipped = self.over(step, state.variables[0]);
-        if slipped.way == 0.0 {
-            return;
-        }
-        let (count, weights) = (step.nodes.count(), step.quadrature(1.0));
-        let direction = (slipped.at[1] - slipped.at[0]).signum();
-        let along = |k: usize| (direction * step.rate[k]).max(0.0);
-        let whole = |share: &dyn Fn(usize) -> f64| (0..=count).map(|k| step.h * weights[k] * share(k)).sum::<f64>();
-        let slips_at_once = slipped.at[1] != slipped.at[0];
-        let share: &dyn Fn(usize) -> f64 = if slips_at_once && whole(&along) > 0.0 { &along } else { &|_| 1.0 };
-        let scale = self.limit * slipped.way / whole(share);
-        for (k, power) in powers.iter_mut().enumerate().take(count + 1) {
-            power.dissipation += scale * share(k);
+        for (k, power) in powers.iter_mut().enumerate().take(step.nodes.count() + 1) {
+            power.dissipation += self.power(step, &[], &slipped, k).dissipation;
         }
     }
 
     fn at(&self, step: &Step, theta: f64, at: &Point, state: StateRef) -> Observation {
         let slipped = self.over(step, state.variables[0]);
         let before = step.positions().iter().take_while(|node| **node < theta).count();
-        self.observation(at, slipped.at[before])
+        self.between(at, &[slipped.at[before]])
     }
 
     fn now(&self, at: &Point, state: StateRef) -> Observation {
-        self.observation(at, state.variables[0])
+        self.between(at, state.variables)
     }
 
     /// Small and fast strokes do not make it slip.
     fn linearised(&self, _: &Point) -> Term {
-        Term { coefficient: self.stiffness, order: 0.0 }
+        Term { coefficient: self.stiffness.value, order: 0.0 }
     }
 
     /// With x = A cos θ it comes back from F_y over 0 ≤ θ ≤ ϑ, cos ϑ = 1 − 2F_y/(k·A), and slips until θ = π (Caughey 1960).
     fn harmonic(&self, _: &Point, amplitude: f64, _: f64) -> Option<Complex64> {
         let share = self.yields_at() / amplitude;
         if share >= 1.0 {
-            return Some(self.stiffness.into());
+            return Some(self.stiffness.value.into());
         }
         let angle = 2.0 * share.sqrt().asin();
-        let storage = self.stiffness / PI * (angle - 0.5 * (2.0 * angle).sin());
-        Some(Complex64::new(storage, 4.0 * self.limit / (PI * amplitude) * (1.0 - share)))
+        let storage = self.stiffness.value / PI * (angle - 0.5 * (2.0 * angle).sin());
+        Some(Complex64::new(storage, 4.0 * self.limit.value / (PI * amplitude) * (1.0 - share)))
     }
 
     /// As it is where the stroke came from 0 on one way; small motions do not make it slip.
     fn at_rest(&self, at: &Point, _: f64) -> LeafAtRest {
         let slipped = self.slipped(0.0, at.stroke);
-        let slope = if slipped == 0.0 { self.stiffness } else { 0.0 };
+        let slope = if slipped == 0.0 { self.stiffness.value } else { 0.0 };
         LeafAtRest {
             force: self.force(0.0, at.stroke),
             stiffness: Some(slope),
@@ -232,6 +221,10 @@ impl Leaf for Jenkins {
         }
     }
 
+    fn by_columns(&self) -> Option<&dyn ByColumns> {
+        Some(self)
+    }
+
     fn slips(&self) -> Option<Jenkins> {
         Some(*self)
     }
@@ -239,6 +232,110 @@ impl Leaf for Jenkins {
     fn holds(&self) -> Holds {
         // It yields at F_y.
         Holds::AtTimes
+    }
+}
+
+/// Where it begins and ceases to slip it is as on the side that the step takes.
+impl Columns for Jenkins {
+    type Solved<T: Real> = Slipped<T>;
+
+    fn each_number(&mut self, take: &mut dyn FnMut(&mut Dual)) {
+        [&mut self.stiffness, &mut self.limit].into_iter().for_each(take);
+    }
+
+    fn at_start<T: Real>(&self, at: &Point<T>, take: &mut dyn FnMut(T)) {
+        take(self.follows(0.0.into(), at.stroke, self.slipped(0.0, at.stroke.value())));
+    }
+
+    fn solved(&self, step: &Step, start: &[f64]) -> Slipped {
+        self.over(step, start[0])
+    }
+
+    fn follow(&self, step: &Step<Dual>, start: &[Dual], found: &Slipped) -> Slipped<Dual> {
+        let count = step.nodes.count();
+        let (mut at, mut way) = ([start[0]; MAX_NODES + 1], Dual::default());
+        for i in 0..count {
+            at[i + 1] = self.follows(at[i], step.stroke[i + 1], found.at[i + 1]);
+            way += (at[i + 1] - at[i]).abs();
+        }
+        let end = match step.nodes {
+            Nodes::Midpoint => {
+                let stroke = Dual::from(2.0) * step.stroke[1] - step.stroke[0];
+                self.follows(at[1], stroke, found.end)
+            }
+            _ => at[count],
+        };
+        way += (end - at[count]).abs();
+        Slipped { at, end, last: found.last, way }
+    }
+
+    fn force<T: Real>(&self, step: &Step<T>, slipped: &Slipped<T>, k: usize) -> T {
+        self.pull(slipped.at[k], step.stroke[k])
+    }
+
+    fn power<T: Real>(&self, step: &Step<T>, _: &[T], slipped: &Slipped<T>, k: usize) -> Power<T> {
+        let zero = T::from(0.0);
+        if slipped.way.value() == 0.0 {
+            return Power { dissipation: zero, input: zero };
+        }
+        let (count, weights) = (step.nodes.count(), step.quadrature(1.0));
+        let direction = T::from((slipped.at[1].value() - slipped.at[0].value()).signum());
+        let along = |k: usize| {
+            let rate = direction * step.rate[k];
+            if rate.value() > 0.0 { rate } else { zero }
+        };
+        let whole =
+            |share: &dyn Fn(usize) -> T| -> T { (0..=count).map(|k| T::from(step.h * weights[k]) * share(k)).sum() };
+        let slips_at_once = slipped.at[1].value() != slipped.at[0].value();
+        let share: &dyn Fn(usize) -> T =
+            if slips_at_once && whole(&along).value() > 0.0 { &along } else { &|_| T::from(1.0) };
+        let scale = T::of(self.limit) * slipped.way / whole(share);
+        Power { dissipation: scale * share(k), input: zero }
+    }
+
+    fn at_end<T: Real>(&self, _: &Step<T>, _: &[T], slipped: &Slipped<T>, take: &mut dyn FnMut(T)) {
+        take(slipped.end);
+    }
+
+    fn within<T: Real>(
+        &self,
+        step: &Step<T>,
+        theta: f64,
+        at: &Point<T>,
+        _: &[T],
+        slipped: &Slipped<T>,
+    ) -> Observation<T> {
+        let before = step.positions().iter().take_while(|node| **node < theta).count();
+        self.between(at, &[slipped.at[before]])
+    }
+
+    fn between<T: Real>(&self, at: &Point<T>, variables: &[T]) -> Observation<T> {
+        let force = self.pull(variables[0], at.stroke);
+        let stored = Some(T::from(0.5) * force * force / T::of(self.stiffness));
+        Observation { derivative: at.stroke, regular: force, singular: 0.0.into(), stored }
+    }
+}
+
+impl Jenkins {
+    /// p behind `before`, of which it is known to be `found`, where the stroke has gone to `stroke`.
+    fn follows<T: Real>(&self, before: T, stroke: T, found: f64) -> T {
+        let reach = T::of(self.limit) / T::of(self.stiffness);
+        match found.total_cmp(&before.value()) {
+            Ordering::Equal => before,
+            Ordering::Greater => stroke - reach,
+            Ordering::Less => stroke + reach,
+        }
+    }
+
+    /// [`Self::force`].
+    fn pull<T: Real>(&self, slipped: T, stroke: T) -> T {
+        let ([stiffness, limit], force) =
+            ([self.stiffness, self.limit].map(T::of), self.force(slipped.value(), stroke.value()));
+        match (force >= self.limit.value, force <= -self.limit.value) {
+            (true, _) => limit,
+            (_, true) => -limit,
+            (false, false) => stiffness * (stroke - slipped),
+        }
     }
 }
 
@@ -257,6 +354,6 @@ pub(super) fn kind() -> LeafKind {
         name: "jenkins",
         equation: "dF = k·dx, cut at ±F_y",
         params: params(),
-        build: LeafBuild::Values(|values, _| Ok(Network::leaf(Jenkins::new(values[0].value, values[1].value)?))),
+        build: LeafBuild::Values(|values, _| Ok(Network::leaf(Jenkins::new(values[0], values[1])?))),
     }
 }

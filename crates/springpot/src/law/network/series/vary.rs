@@ -503,6 +503,9 @@ impl Vary for Series {
         if (0..self.parts.len()).filter(|k| self.slides(*k)).count() > 1 {
             return Some("friction in series with friction".to_owned());
         }
+        if (0..self.parts.len()).any(|k| self.slips(k).is_some()) {
+            return Some("a spring that slips in series with what is no spring".to_owned());
+        }
         self.parts.iter().find_map(|part| part.ask().without_derivatives())
     }
 
