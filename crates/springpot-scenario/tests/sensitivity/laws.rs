@@ -59,7 +59,7 @@ fn starts_that_are_singular() {
             ("motion.start.q.q1", 1e-3),
             ("robot.body.cart.mass", 1e-2),
         ];
-        compare(&text, &["q.q1", "v.q1", "a.q1", "strut.force"], &paths);
+        compare(&text, &["q.q1", "v.q1", "a.q1", "strut.force", "strut.derivative"], &paths);
     }
 }
 

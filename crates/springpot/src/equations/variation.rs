@@ -96,8 +96,8 @@ pub(crate) struct ElementVariation {
     inputs: [Vec<f64>; 2],
     /// Forces at the nodes, by all but strokes and rates there.
     pub(crate) force: Vec<f64>,
-    /// Force and stored energy at the row.
-    row: [Vec<f64>; 2],
+    /// Force, stored energy and D^alpha x at the row.
+    row: [Vec<f64>; 3],
 }
 
 /// One node.
@@ -188,7 +188,7 @@ impl Variation {
                 rate: points(),
                 inputs: [inputs(), inputs()],
                 force: vec![0.0; STAGES * count],
-                row: [vec![0.0; count], vec![0.0; count]],
+                row: [(); 3].map(|()| vec![0.0; count]),
             }
         };
         let seeds = by.parameters.iter().enumerate().flat_map(|(p, own)| own.seeds.iter().map(move |seed| (p, seed)));
@@ -350,12 +350,13 @@ impl Variation {
         }
         let mut solve = std::mem::take(&mut self.solve);
         if solve.factor_part(&node.slopes.d_a, n, &free) {
-            let mut spare = vec![0.0; count];
-            for (e, ElementVariation { law, stroke, rate, inputs, row: [force, _], .. }) in
+            let mut spare = [vec![0.0; count], vec![0.0; count]];
+            for (e, ElementVariation { law, stroke, rate, inputs, row: [force, ..], .. }) in
                 self.elements.iter_mut().enumerate()
             {
                 force.fill(0.0);
-                let mut sum = ObservationVariation { force, stored: &mut spare };
+                let [stored, derivative] = &mut spare;
+                let mut sum = ObservationVariation { force, stored, derivative };
                 let told = at_start(count, [stroke, rate], inputs);
                 equations.bank.vary_now(e, &equations.bank.point(e, 0), &told, law, &mut sum);
             }
@@ -701,7 +702,8 @@ impl Variation {
         let count = self.count();
         for e in 0..self.elements.len() {
             self.measure(e, ROW);
-            let ElementVariation { law, stroke, rate, inputs, row: [force, stored], .. } = &mut self.elements[e];
+            let ElementVariation { law, stroke, rate, inputs, row: [force, stored, derivative], .. } =
+                &mut self.elements[e];
             let own = |blocks: &'_ Vec<f64>| blocks.len() / (ROW + 1) * ROW;
             let [values, rates] = &*inputs;
             let told = PointVariation {
@@ -713,7 +715,8 @@ impl Variation {
             };
             force.fill(0.0);
             stored.fill(0.0);
-            let mut sum = ObservationVariation { force, stored };
+            derivative.fill(0.0);
+            let mut sum = ObservationVariation { force, stored, derivative };
             let point = evaluation.elements[e].point(evaluation.t);
             match theta {
                 Some(theta) => equations.bank.vary_at(e, (theta, &point), &told, law, &mut sum),
@@ -722,7 +725,7 @@ impl Variation {
             if self.singular.is_there {
                 let from = evaluation.t;
                 let [change, ..] = self.singular_at(equations, e, from, snapshot);
-                let [force, _] = &mut self.elements[e].row;
+                let [force, ..] = &mut self.elements[e].row;
                 force.iter_mut().zip(change).for_each(|(force, change)| *force += change);
             }
         }
@@ -779,6 +782,16 @@ impl Variation {
                         each(&|p| -(element.row[0][p] * gradient[row] + force * along(turned, &node.q, p)))
                     }
                     ElementQuantity::Stored => element.row[1].clone(),
+                    ElementQuantity::Derivative => {
+                        let law = &self.system.elements[e].law;
+                        let order = law.reported_order(&snapshot.evaluation.elements[e].point(node.t));
+                        match (law.has_memories(), law.as_heated().is_some()) {
+                            (true, _) => element.row[2].clone(),
+                            // Of a dashpot the rate by another clock.
+                            (false, true) if order > 0.0 => return None,
+                            _ => block(if order > 0.0 { &element.rate } else { &element.stroke }, ROW),
+                        }
+                    }
                     ElementQuantity::InputValue(i) => {
                         let [values, _] = &element.inputs;
                         let inputs = values.len() / ((ROW + 1) * count);

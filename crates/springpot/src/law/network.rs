@@ -559,6 +559,11 @@ impl Network {
         self.ask().has_memories_in_series()
     }
 
+    /// Whether it keeps fractional derivatives.
+    pub(crate) fn has_memories(&self) -> bool {
+        self.ask().size().memories > 0
+    }
+
     /// Whether it keeps inner strokes or inner variables, whose errors no stroke shows.
     pub fn has_inner_variables(&self) -> bool {
         self.ask().size().variables > 0

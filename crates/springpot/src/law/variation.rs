@@ -45,6 +45,8 @@ pub struct ObservationVariation<'a> {
     pub force: &'a mut [f64],
     /// Of the stored energy.
     pub stored: &'a mut [f64],
+    /// Of D^alpha x of a law with one springpot, with that share.
+    pub derivative: &'a mut [f64],
 }
 
 /// What parameters change of energy flows at the start and at the nodes of a step: s + 1 blocks of derivatives, to which every leaf adds its own.

@@ -272,7 +272,9 @@ pub enum SensitivityError {
 
 /// Whether derivatives of a quantity are known.
 pub fn has_derivative(quantity: Quantity) -> bool {
-    use crate::observe::ElementQuantity::{Force, GeneralizedForce, InputValue, Length, Rate, Stored, Stroke};
+    use crate::observe::ElementQuantity::{
+        Derivative, Force, GeneralizedForce, InputValue, Length, Rate, Stored, Stroke,
+    };
     use crate::observe::EnergyQuantity::{Kinetic, Potential};
     match quantity {
         Quantity::Time
@@ -284,7 +286,7 @@ pub fn has_derivative(quantity: Quantity) -> bool {
         | Quantity::GripperError
         | Quantity::Energy(Kinetic | Potential) => true,
         Quantity::Element(_, of) => {
-            matches!(of, Length | Stroke | Rate | Force | GeneralizedForce(_) | Stored | InputValue(_))
+            matches!(of, Length | Stroke | Rate | Derivative | Force | GeneralizedForce(_) | Stored | InputValue(_))
         }
         Quantity::Energy(_) | Quantity::Derivative(_) => false,
     }

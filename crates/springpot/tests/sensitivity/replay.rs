@@ -272,12 +272,6 @@ impl Replay {
         }
     }
 
-    /// Whether nothing is known of what the last input changes.
-    pub(crate) fn is_unknown_by_last(&self) -> bool {
-        let changes = self.changes(&[self.count() - 1]);
-        changes[0].iter().filter(|(what, _)| *what == "force").all(|(_, values)| values.iter().all(|x| x.is_nan()))
-    }
-
     /// Compares what changes by every parameter with differences, and columns together with columns alone.
     pub(crate) fn check(&self, name: &str, known: f64) {
         let all: Vec<usize> = (0..self.count()).collect();
@@ -332,9 +326,9 @@ fn vary_at(
     seen: &mut [Seen],
     what: &'static str,
 ) {
-    let mut sums = [vec![0.0; own.count], vec![0.0; own.count]];
-    let [force, stored] = &mut sums;
-    law.vary_at(at, state, told, own, &mut ObservationVariation { force, stored });
+    let mut sums = [(); 3].map(|()| vec![0.0; own.count]);
+    let [force, stored, derivative] = &mut sums;
+    law.vary_at(at, state, told, own, &mut ObservationVariation { force, stored, derivative });
     for (p, seen) in seen.iter_mut().enumerate() {
         push(seen, what, &[sums[0][p]]);
         push(seen, if what == "now" { "stored now" } else { "stored" }, &[sums[1][p]]);

@@ -490,6 +490,8 @@ impl Leaf for Springpot {
         let c = self.coefficient.at(at.inputs).value;
         let followed = self.coefficient.input.and_then(|input| told.input(input, count)).map(|[value, _]| value);
         add(sum.force, c, &derivatives);
+        add(sum.derivative, 1.0, &derivatives);
+        tangent.singular_part(memory, at.t, sum.derivative);
         self.coefficient.add_change(at.inputs, followed, &own, derivative, sum.force);
         let (mut stored, mut dissipation) = (vec![0.0; count], vec![0.0; count]);
         let mut change = EnergyTangent { stored: &mut stored, dissipation: &mut dissipation };

@@ -400,7 +400,8 @@ impl Series {
                 let (mut state, mut own) = (behind, of_parts);
                 let (told, mut spare) =
                     (PointVariation { stroke: starts.variable(k), rate, step: None, ..*told }, vec![0.0; count]);
-                let mut sum = ObservationVariation { force, stored: &mut spare };
+                let mut unused = vec![0.0; count];
+                let mut sum = ObservationVariation { force, stored: &mut spare, derivative: &mut unused };
                 part.ask().vary_at((When::Between, &inside), &mut state, &told, &mut own, &mut sum);
                 (state, own)
             };
@@ -439,7 +440,7 @@ impl Series {
         state: &mut StateRef,
         told: &PointVariation,
         own: VariationRef,
-        (rates, stored): (&[[f64; MOST_IN_SERIES]], &mut [f64]),
+        (rates, [stored, derivative]): (&[[f64; MOST_IN_SERIES]], [&mut [f64]; 2]),
     ) {
         let settled = self.settle(at, strokes, *state);
         let (count, mut of_parts) = (own.count, own);
@@ -449,7 +450,7 @@ impl Series {
             let told = PointVariation { stroke: starts.variable(k), rate: &rate, step: None, ..*told };
             let inside = Point { stroke: strokes[k], rate: settled.rates[k], ..*at };
             let mut spare = vec![0.0; count];
-            let mut sum = ObservationVariation { force: &mut spare, stored };
+            let mut sum = ObservationVariation { force: &mut spare, stored, derivative };
             part.ask().vary_at((When::Between, &inside), state, &told, &mut of_parts, &mut sum);
         }
     }
@@ -633,7 +634,7 @@ impl Vary for Series {
             let (strokes, _) = self.own(state);
             let (now, rates) = self.change_now(at, strokes, *state, told, share);
             add(sum.force, 1.0, force.as_ref().unwrap_or(&now));
-            return self.stored_now(at, strokes, state, told, share, (&rates, sum.stored));
+            return self.stored_now(at, strokes, state, told, share, (&rates, [sum.stored, sum.derivative]));
         };
         let is_between = theta < 1.0 && step.nodes == Nodes::Radau && step.course == Course::Sought;
         let between = is_between.then(|| {
@@ -657,7 +658,7 @@ impl Vary for Series {
                 passed: changes.passed.as_ref().map(|passed| &passed[(last - 1) * share.count..]),
             };
             let mut spare = vec![0.0; share.count];
-            let mut sum = ObservationVariation { force: &mut spare, stored: sum.stored };
+            let mut sum = ObservationVariation { force: &mut spare, stored: sum.stored, derivative: sum.derivative };
             let when = (When::Within(&inner.step(&step), 1.0), &inside);
             part.ask().vary_at(when, state, &of_part, &mut of_parts, &mut sum);
         }
