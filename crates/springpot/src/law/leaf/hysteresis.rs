@@ -107,6 +107,7 @@ impl Hysteresis {
         let bound = 2.0 * self.largest().max(start.abs());
         let mut z = [start; MAX_NODES + 1];
         let mut tangent = Matrix::default();
+        let way = way(&rate[..=count]);
         for _ in 0..MOST_ITERATIONS {
             // (I − h A diag(∂z'/∂z)) against h A diag(∂z'/∂v) and against the residual.
             let mut system = [[0.0; 2 * MAX_NODES + 1]; MAX_NODES];
@@ -116,7 +117,9 @@ impl Hysteresis {
                 for j in 0..count {
                     let held = back.map_or(0.0, |back| (0..count).map(|k| back[j][k] * z[k + 1]).sum());
                     let (weight, at) = (h * matrix[i][j], (z[j + 1], rate[j + 1] - held));
-                    let [by_z, by_v] = self.slopes(at.0, at.1);
+                    // What is held back is looked for with it: there the sign is that of the search.
+                    let side = if back.is_none() { on_the_way(at.1, way) } else { at.1 };
+                    let [by_z, by_v] = self.slopes(at.0, side);
                     system[i][j] -= weight * by_z;
                     if let Some(back) = back {
                         (0..count).for_each(|k| system[i][k] += weight * by_v * back[j][k]);
@@ -156,11 +159,13 @@ impl Hysteresis {
     ) -> Values<Dual> {
         // (I − h A diag(∂z'/∂z)) δz = δz_0 + h A δz', of which v at the nodes follows z by −∂z'/∂v·back.
         let mut system = [[0.0; MAX_NODES + 1]; MAX_NODES];
+        let way = way(&Dual::values(&moved[..=count]));
         for (i, row) in system.iter_mut().enumerate().take(count) {
             row[i] = 1.0;
             row[MAX_NODES] = start.slope;
             for j in 0..count {
                 let (weight, v) = (h * matrix[i][j], moved[j + 1]);
+                let v = Dual { value: on_the_way(v.value, way), ..v };
                 let [by_z, by_v] = self.slopes(z[j + 1], v.value);
                 row[j] -= weight * by_z;
                 if let Some(back) = back {
@@ -176,6 +181,19 @@ impl Hysteresis {
             _ => Dual::default(),
         })
     }
+}
+
+/// Share of the largest rate below which one is 0 but for rounding.
+const AT_REST: f64 = 1e-10;
+
+/// The largest of the rates of a step, with its sign.
+fn way(rate: &[f64]) -> f64 {
+    rate.iter().fold(0.0, |way: f64, rate| if rate.abs() > way.abs() { *rate } else { way })
+}
+
+/// A rate on the side of the others where it is 0 but for rounding: a step ends where the stroke turns round, and is all on one side of that.
+fn on_the_way(v: f64, way: f64) -> f64 {
+    if v.abs() <= AT_REST * way.abs() { v.abs().max(f64::MIN_POSITIVE).copysign(way) } else { v }
 }
 
 /// −1, 0 or 1.
