@@ -58,6 +58,17 @@ derivatives of the first case are compared with differences of whole runs, one l
 
 Exit codes: 0 done, 1 a run failed or a derivative differs by more than 1e-5 of its largest value, 2 the input was refused, 130 interrupted.")]
     Sensitivity(SensitivityOptions),
+    /// Move the parameters of a scenario until a metric is as small, or as large, as constraints let it be.
+    #[command(after_help = "\
+Examples:
+  springpot design strut.toml
+  springpot design strut.toml --starts 20 --out designed
+
+Moves every [[parameter]] within its bounds by exact gradients, from several starts, for [design] of the file. Into the folder of results: \
+design.json, steps.csv with all runs, designed.toml, the scenario with the values found and its comments, and the results of its run.
+
+Exit codes: 0 done, 1 no admissible point was found or the search did not converge, 2 the input was refused, 130 interrupted.")]
+    Design(DesignOptions),
     /// Put the parts of a run together that several machines have run.
     #[command(after_help = "\
 Examples:
@@ -616,6 +627,31 @@ pub(crate) struct SensitivityOptions {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Cases at a time [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..), allow_negative_numbers = true)]
+    pub(crate) jobs: Option<u16>,
+    /// Write no figures
+    #[arg(long)]
+    pub(crate) no_figures: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct DesignOptions {
+    /// Scenario file (TOML)
+    #[arg(value_name = "SCENARIO")]
+    pub(crate) file: PathBuf,
+    /// Override a value of the file, such as element.strut.alpha=0.5; PATH= takes the key out; may be given several times
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub(crate) overrides: Vec<String>,
+    /// Starts of the search [default: those of the file, 8]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..), allow_negative_numbers = true)]
+    pub(crate) starts: Option<u16>,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Folder of the results [default: results/<file stem>]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Starts at a time [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..), allow_negative_numbers = true)]
     pub(crate) jobs: Option<u16>,
     /// Write no figures

@@ -141,6 +141,7 @@ fn command(catalog: &Catalog, disk: &Disk, arguments: &[OsString]) -> u8 {
     let ending = match arguments.command {
         Command::Run(options) => scenario::run::run(&with_fewer_jobs(options), catalog, disk),
         Command::Sensitivity(options) => scenario::sensitivity::sensitivity(&options, catalog, disk),
+        Command::Design(options) => scenario::design::design(&options, catalog, disk),
         Command::Merge(options) => scenario::run::merge(&options, catalog, disk),
         Command::Check(options) => scenario::check::check(&options, catalog),
         Command::Info(options) => robot::info::info(&options, catalog),

@@ -118,6 +118,22 @@ def test_simulations_have_tangents() -> None:
         sp.Simulation(ARM, sensitivity=BY, motions={"q1": lambda t: 0.1 * t})
 
 
+def test_designs_move_parameters() -> None:
+    tables = '[[parameter]]\nname = "order"\npath = "element.strut.alpha"\nbounds = [0.2, 0.8]\n[design]\nminimise = "deep"\n'
+    found = sp.design(ARM + tables, starts=2)
+    order = found.parameters["order"]
+    assert found.status == "converged" and order.path == BY[0] and found.runs == len(found.steps["objective"])
+    at = [sp.run(ARM, {BY[0]: order.value + step}).metrics["deep"] for step in (-0.01, 0.0, 0.01)]
+    assert found.objective["after"] == pytest.approx(at[1], rel=1e-8)
+    if order.at_bound is None:
+        assert at[0] > at[1] < at[2]
+    else:
+        assert order.value == {"lower": 0.2, "upper": 0.8}[order.at_bound]
+    assert found.run().metrics["deep"] == pytest.approx(at[1], rel=1e-8)
+    with pytest.raises(sp.ScenarioError, match="no \\[design\\]"):
+        sp.design(ARM)
+
+
 @pytest.mark.skipif(importlib.util.find_spec("jax") is None, reason="JAX is not installed")
 def test_jax_differentiates_columns() -> None:
     import jax

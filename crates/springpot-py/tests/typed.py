@@ -39,6 +39,15 @@ inputs = { u = "1 V" }
 
 SMOOTH = TEXT.replace('event = [{ name = "turn", when = "v.q1" }]\n', "")
 
+DESIGN = SMOOTH.replace("kind = \"max\"", "kind = \"rms\"") + """
+[[parameter]]
+name = "order"
+path = "element.strut.alpha"
+bounds = [0.2, 0.8]
+[design]
+minimise = "largest"
+"""
+
 
 def robots() -> None:
     model: sp.Model = sp.Model.from_scenario(TEXT, set={"robot.body.arm.mass": "1.5 kg"})
@@ -213,6 +222,14 @@ def runs(folder: Path) -> None:
     lost: list[tuple[str, float, str]] = tangents.case(0).lost
     value, by = sp.gradient(SMOOTH, "largest", "element.strut.alpha", set={"time.end": 0.1})
     by = tangents.case(0).gradient("largest")
+    found: sp.Design = sp.design(DESIGN, set={"time.end": 0.1}, starts=1, jobs=1)
+    order: sp.DesignedParameter = found.parameters["order"]
+    facts: tuple[str, str, float, str, float, str | None, float] = (
+        order.name, order.path, order.value, order.unit, order.before, order.at_bound, order.gradient
+    )
+    rest: list[Any] = [found.status, found.objective, found.constraints, found.starts, found.runs, found.steps["objective"]]
+    designed: sp.Run = sp.run(found.scenario)
+    designed = found.run(jobs=1)
     table: dict[str, NDArray[Any]] = grid.table()
     files: list[str] = run.save(folder / "run", format="npz", figures=False)
     page: Path = run.view(folder / "view.html", cases=[0], open=False)

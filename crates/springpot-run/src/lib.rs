@@ -12,6 +12,7 @@
 //! | [`metrics`] | numbers that say how good a run is, at its end and from its results |
 //! | [`parts`] | a law as its parts: drawn, and as formulas |
 //! | [`numbers`] | numbers and counts as a reader wants them |
+//! | [`design`] | parameters moved until a metric is as small as constraints let it be |
 //! | [`trial`] | scenarios whose parameters take other values |
 //! | [`labels`] | names of columns as a reader of a figure wants them |
 //!
@@ -34,6 +35,7 @@
 
 mod asked;
 mod checks;
+pub mod design;
 mod export;
 pub mod figures;
 mod finish;

@@ -66,6 +66,7 @@ pub use fit::{
 pub use keys::{MAX_CASES, MetricKind};
 pub use motion::MotionPlan;
 pub use plan::cure::Cure;
+pub use plan::design::{Constraint, DesignPlan};
 pub use plan::events::EventPlan;
 pub use plan::metrics::{Band, Metric, MetricPlan};
 pub use plan::{OutputPlan, Plan};

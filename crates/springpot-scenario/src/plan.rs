@@ -2,6 +2,7 @@
 
 pub(crate) mod control;
 pub(crate) mod cure;
+pub(crate) mod design;
 pub(crate) mod events;
 pub(crate) mod metrics;
 mod output;
@@ -12,6 +13,7 @@ mod system;
 pub use self::output::OutputPlan;
 use crate::elements::plan::ElementPlan;
 use crate::motion::MotionPlan;
+use crate::plan::design::DesignPlan;
 use crate::plan::events::EventPlan;
 use crate::plan::metrics::MetricPlan;
 use crate::robot::described::{BodyPlaces, EndStops, Gripper, UrdfPlan};
@@ -50,6 +52,8 @@ pub struct Plan {
     pub events: Vec<EventPlan>,
     /// What says how good it is.
     pub metrics: Vec<MetricPlan>,
+    /// What its parameters are moved for, where it says so.
+    pub design: Option<DesignPlan>,
     /// What deserves a warning in its files.
     pub warnings: Vec<Remark>,
     /// Duration, rows, accuracy and steps.

@@ -1,6 +1,7 @@
-//! Commands about a scenario: init, check, run, merge, sensitivity, fit.
+//! Commands about a scenario: init, check, run, merge, sensitivity, fit, design.
 
 pub(crate) mod check;
+pub(crate) mod design;
 pub(crate) mod failures;
 pub(crate) mod fit;
 pub(crate) mod init;

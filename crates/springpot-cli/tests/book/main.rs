@@ -68,6 +68,7 @@ pages! {
     scenario_sweep: "scenario/sweep.md";
     scenario_sensitivity: "scenario/sensitivity.md";
     scenario_fit: "scenario/fit.md";
+    scenario_design: "scenario/design.md";
     scenario_figures: "scenario/figures.md";
     scenario_results: "scenario/results.md";
     keys: "reference/keys.md";
@@ -83,6 +84,7 @@ pages! {
     memory: "theory/memory.md";
     tolerance: "theory/tolerance.md";
     dynamics: "theory/dynamics.md";
+    events_theory: "theory/events.md";
     commands: "COMMANDS.md";
     python_package: "reference/python.md";
     robots: "ROBOTS.md";

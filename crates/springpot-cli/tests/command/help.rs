@@ -114,7 +114,7 @@ fn mistyped_commands_get_a_suggestion() {
         (&["rum", "arm.toml"][..], "no command \"rum\"\n  help: did you mean `run`?"),
         (&["rn", "arm.toml"], "did you mean `run`?"),
         (&["chek", "arm.toml"], "did you mean `check`?"),
-        (&["control"], "help: there is run, sensitivity, merge, check,"),
+        (&["control"], "help: there is run, sensitivity, design, merge,"),
         (
             &["arm.toml"],
             "no command, but a file\n  help: `springpot run arm.toml` runs it, `springpot check arm.toml` looks at it",

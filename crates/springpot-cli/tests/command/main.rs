@@ -2,6 +2,7 @@
 
 mod check;
 mod derivative;
+mod design;
 mod doubts;
 mod dynamics;
 mod dynamics_refusals;

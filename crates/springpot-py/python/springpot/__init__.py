@@ -21,6 +21,7 @@ from ._errors import ModelError, RunError, ScenarioError, SpringpotError, Spring
 from ._case import Case
 from ._cluster import sweep
 from ._figure import Figure
+from ._design import Design, DesignedParameter, design
 from ._fit import Fit, Parameter, Problem, fit, problem
 from ._gradient import gradient
 from ._law import Master, datasheet, law, laws, master, network, prony
@@ -32,6 +33,8 @@ _Mapping.register(Snapshot)
 __all__ = [
     "Bank",
     "Case",
+    "Design",
+    "DesignedParameter",
     "Figure",
     "Fit",
     "Law",
@@ -51,6 +54,7 @@ __all__ = [
     "SpringpotWarning",
     "__version__",
     "datasheet",
+    "design",
     "fit",
     "fractional",
     "gradient",

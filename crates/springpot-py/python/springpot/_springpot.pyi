@@ -437,6 +437,10 @@ class Case:
     @property
     def statistics(self) -> list[tuple[float, float, float]]: ...
 
+def designed(
+    scenario: object, set: object = None, starts: int | None = None, jobs: int = 0
+) -> tuple[str, str, str]: ...
+
 class Study:
     """The cases of a scenario."""
 

@@ -230,7 +230,7 @@ fn targets(field: &Field<'_>, document: &Node) -> Read<Vec<Target>> {
     all(fields.iter().map(|field| {
         let target = path::resolve(field.ctx, document, field.text()?, &field.node.place)?;
         match target.ends() {
-            ("sweep" | "figure" | "output" | "title" | "parameter" | "sensitivity", _)
+            ("sweep" | "figure" | "output" | "title" | "parameter" | "sensitivity" | "design", _)
             | ("robot" | "element" | "metric", "name") => {
                 let message = format!("is {:?}, which cannot be swept", shorten(&target.written));
                 let help = "names, figures and outputs are the same in every case".to_owned();

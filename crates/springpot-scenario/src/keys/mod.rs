@@ -6,6 +6,7 @@
 mod constants;
 mod controller;
 mod data;
+mod design;
 mod element;
 mod event;
 mod heat;
@@ -25,6 +26,7 @@ pub(crate) use controller::{
     CONDITIONAL, CONTROLLER, ControllerKind, GRIPPER_PATH, Gained, Gains, MOVE, NONE, REFERENCE, TRAPEZOID,
 };
 pub(crate) use data::{CREEP, DATA, DATA_COLUMN, DMA, FIT, HUBER, RELAXATION, RUN, STROKE};
+pub(crate) use design::{CONSTRAINT, DESIGN};
 pub(crate) use element::{
     BETWEEN, BUSHING, COMPONENT, COMPONENTS, ELEMENT, ELEMENT_FIELDS, END, HELD, LONE, ON_JOINT, PASTS, RESERVED_NAMES,
     START as AT_START,

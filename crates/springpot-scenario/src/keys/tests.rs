@@ -212,6 +212,8 @@ fn the_pages_have_the_same_keys() {
         (&[("sensitivity", "[sensitivity]")], all(&SENSITIVITY)),
         (&[("fit", "[[data]]")], all(&DATA)),
         (&[("fit", "[fit]")], all(&FIT)),
+        (&[("design", "[design]")], all(&DESIGN)),
+        (&[("design", "Constraints")], all(&CONSTRAINT)),
         (&[("figures", "[[figure]]")], all(&FIGURE)),
     ];
     let mut compared = 0;
@@ -261,6 +263,8 @@ fn the_pages_have_the_same_keys() {
         &PRIOR,
         &DATA_COLUMN,
         &HUBER,
+        &DESIGN,
+        &CONSTRAINT,
     ] {
         for key in keys.keys {
             let named = [
@@ -303,6 +307,7 @@ fn the_index_leads_to_every_key() {
         ("## [sensitivity]", &[&SENSITIVITY]),
         ("## [[data]]", &[&DATA, &DATA_COLUMN, &HUBER]),
         ("## [fit]", &[&FIT]),
+        ("## [design]", &[&DESIGN, &CONSTRAINT]),
         ("## [[figure]]", &[&FIGURE, &POINTS]),
         ("## [output]", &[&OUTPUT]),
     ] {

@@ -10,6 +10,7 @@ use crate::elements::Elements;
 use crate::figures::{self, ColumnGlob, FigurePlan};
 use crate::keys::OUTPUT;
 use crate::motion;
+use crate::plan::design;
 use crate::plan::events;
 use crate::plan::metrics::{self, MetricPlan};
 use crate::plan::{OutputPlan, Plan};
@@ -630,6 +631,7 @@ pub(crate) fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
         motion: motion?,
         events: Vec::new(),
         metrics: Vec::new(),
+        design: None,
         sensitivity: None,
         warnings: Vec::new(),
         settings: time.and(settings)?,
@@ -641,6 +643,7 @@ pub(crate) fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
     plan.motion.follow(control);
     plan.events = events::read(&root, &plan)?;
     plan.metrics = metrics::read(&root, &plan)?;
+    plan.design = design::read(&root, &plan)?;
     plan.warnings = ctx.warnings();
     Ok(plan)
 }

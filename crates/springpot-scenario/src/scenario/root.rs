@@ -3,7 +3,7 @@
 use crate::figures::FIGURE;
 use crate::keys::MOTION;
 use crate::keys::{
-    DATA, ELEMENT, EVENT, FIT, Keys, MAX_BLOCKS, METRIC, Need, OUTPUT, PARAMETER, ROBOT, SENSITIVITY, SOLVER, SWEEP,
+    DATA, DESIGN, ELEMENT, EVENT, FIT, Keys, MAX_BLOCKS, METRIC, Need, OUTPUT, PARAMETER, ROBOT, SENSITIVITY, SOLVER, SWEEP,
     Shape, TIME, key,
 };
 
@@ -45,6 +45,7 @@ pub(crate) static SCENARIO: Keys = Keys {
         key("sensitivity", Shape::Table(&SENSITIVITY), Need::Optional, "Derivatives of the columns."),
         key("data", Shape::Tables(&DATA, None), Need::Optional, "Measurements, for `springpot fit`."),
         key("fit", Shape::Table(&FIT), Need::Optional, "How parameters are fitted to them."),
+        key("design", Shape::Table(&DESIGN), Need::Optional, "What parameters are moved for."),
         key("figure", Shape::Tables(&FIGURE, None), Need::Optional, "Figures to draw."),
         key("output", Shape::Table(&OUTPUT), Need::Optional, "What is written."),
     ],

@@ -27,7 +27,7 @@ pub struct Scenario {
     /// Sweeps that take the place of its own, or stand beside them: paths and `values`.
     pub(super) sweeps: Vec<Override>,
     /// By what it is differentiated besides.
-    pub(super) sensitivity: Vec<More>,
+    pub(crate) sensitivity: Vec<More>,
 }
 
 impl Scenario {

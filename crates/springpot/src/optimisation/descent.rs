@@ -47,6 +47,9 @@ const FIRST_REACH: f64 = 0.2;
 /// Shares of a step that are tried one after another at most.
 const MOST_TRIES: usize = 8;
 
+/// The merit is to fall below the largest of so many points (L. Grippo, F. Lampariello, S. Lucidi, SIAM J. Numer. Anal. 23 (1986) 707–716).
+const REMEMBERED: usize = 5;
+
 /// Curvature of the unknown that stands for the largest of several.
 const OF_LARGEST: f64 = 0.1;
 
@@ -69,8 +72,9 @@ pub fn descend(
     };
     let count = value.constraints.len();
     let (mut curvature, mut is_new) = (Curvature::unit(n, steepness(&value)), true);
-    let (mut reach, mut price) = (FIRST_REACH, 10.0 * steepness(&value).max(1e-12));
+    let (mut reach, mut price) = (FIRST_REACH, steepness(&value).max(1e-12));
     let mut multipliers = vec![0.0; count];
+    let mut passed: Vec<[f64; 2]> = Vec::new();
     loop {
         let Some(step) = step(&x, &value, &curvature, (reach, price)) else {
             return Descent { status: Status::Stalled, x, value: Some(value), multipliers };
@@ -80,17 +84,22 @@ pub fn descend(
         let largest = of_constraints.iter().copied().fold(0.0, f64::max);
         // The price is above every multiplier, so that it pays to keep the constraints.
         if largest >= 0.9 * price && price < 1e8 * steepness(&value).max(1e-12) {
-            price *= 10.0;
+            price *= 4.0;
             continue;
         }
         if small(&x, &step.d) {
             let status = if value.broken() <= HOLDS { Status::Converged } else { Status::Infeasible };
             return Descent { status, x, value: Some(value), multipliers };
         }
-        let merit = |value: &Value| {
-            value.largest() + price * value.constraints.iter().map(|one| one.value.max(0.0)).sum::<f64>()
-        };
-        let (here, expected) = (merit(&value), step.expected);
+        let broken = |value: &Value| value.constraints.iter().map(|one| one.value.max(0.0)).sum::<f64>();
+        let merit = |value: &Value| value.largest() + price * broken(value);
+        if passed.len() == REMEMBERED {
+            passed.remove(0);
+        }
+        passed.push([value.largest(), broken(&value)]);
+        // Along a bent constraint the merit may rise for a while.
+        let here = passed.iter().map(|[largest, broken]| largest + price * broken).fold(f64::NEG_INFINITY, f64::max);
+        let expected = step.expected;
         let mut share = 1.0;
         let mut found = None;
         for _ in 0..MOST_TRIES {
@@ -103,6 +112,19 @@ pub fn descend(
             if there <= here - 1e-4 * share * expected + 1e-13 * here.abs() {
                 found = trial.map(|trial| (next, trial));
                 break;
+            }
+            // A constraint that bends away is met by a second step from there.
+            let bent = trial.filter(|trial| share == 1.0 && broken(trial) > broken(&value).max(HOLDS));
+            if let Some(bent) = bent
+                && let Some(again) = self::step(&x, &value.bent(&bent, &step.d), &curvature, (reach, price))
+                && asked < settings.most
+            {
+                let next: Vec<f64> = x.iter().zip(&again.d).map(|(x, d)| (x + d).clamp(0.0, 1.0)).collect();
+                let trial = ask(&next, &mut asked);
+                if trial.as_ref().map_or(f64::INFINITY, merit) <= here - 1e-4 * expected {
+                    found = trial.map(|trial| (next, trial));
+                    break;
+                }
             }
             // Where the parabola through both values and the slope is least.
             let lower = 0.5 * share * share * expected / (there - here + share * expected);
@@ -118,6 +140,7 @@ pub fn descend(
                 return Descent { status, x, value: Some(value), multipliers };
             }
             (curvature, is_new) = (Curvature::unit(n, steepness(&value)), true);
+            passed.clear();
             reach = (0.5 * reach).max(1e-3);
             continue;
         };
@@ -133,6 +156,19 @@ pub fn descend(
             _ => (2.0 * length).clamp(1e-6, reach),
         };
         (x, value) = (next, trial);
+    }
+}
+
+impl Value {
+    /// The same with constraints that are what they were found to be behind a step `d`.
+    fn bent(&self, there: &Self, d: &[f64]) -> Self {
+        let along = |gradient: &[f64]| gradient.iter().zip(d).map(|(g, d)| g * d).sum::<f64>();
+        let constraints = self
+            .constraints
+            .iter()
+            .zip(&there.constraints)
+            .map(|(here, there)| Slope { value: there.value - along(&here.gradient), gradient: here.gradient.clone() });
+        Self { of: self.of.clone(), constraints: constraints.collect() }
     }
 }
 
