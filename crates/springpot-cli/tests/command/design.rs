@@ -151,12 +151,12 @@ fn what_cannot_be_designed_is_refused() {
             "no gradient is known",
         ),
     ] {
-        place.write("arm.toml", &format!("{THROWN}{tables}"));
+        place.write("arm.toml", format!("{THROWN}{tables}"));
         place.springpot(&["design", "arm.toml", "--out", "none"]).ends(2, &[words]);
     }
     assert!(!place.path("none").exists());
     // Limits that cannot hold together are no mistake of the file.
     let far = "[design]\nminimise = \"ring\"\nstarts = 2\nconstraints = [{ metric = \"effort\", max = \"1 mN\" }]\n";
-    place.write("arm.toml", &format!("{THROWN}{far}"));
+    place.write("arm.toml", format!("{THROWN}{far}"));
     place.springpot(&["design", "arm.toml", "--out", "none"]).ends(1, &["no start leads to a point"]);
 }

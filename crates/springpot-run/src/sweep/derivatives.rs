@@ -157,9 +157,12 @@ pub(super) struct Measured<'a> {
     /// The swept values, each with its comma.
     pub(super) lead: &'a str,
     pub(super) t: &'a [f64],
-    /// Of each metric its column, and those of its derivatives where they are known.
-    pub(super) columns: Vec<(&'a [f64], Option<Vec<&'a [f64]>>)>,
+    /// Of each metric.
+    pub(super) columns: Vec<OfMetric<'a>>,
 }
+
+/// The column of a metric, and its derivatives where they are known.
+pub(super) type OfMetric<'a> = (&'a [f64], Option<Vec<&'a [f64]>>);
 
 impl CaseDerivatives {
     /// Of a case whose metrics have these `values`.

@@ -190,7 +190,7 @@ fn the_pages_have_the_same_keys() {
         |kind: MotionKind| -> Vec<&'static Key> { MOTION.of(kind.name()).filter(|key| !key.only.is_empty()).collect() };
     let all = |keys: &'static Keys| -> Vec<&'static Key> { keys.keys.iter().collect() };
     // The two keys of prescribed joints stand in sentences.
-    let sections: [(Places, Vec<&'static Key>); 22] = [
+    let sections: [(Places, Vec<&'static Key>); 24] = [
         (&[("robot", "[robot]"), ("urdf", "Keys")], all(&ROBOT)),
         (&[("robot", "Bodies")], all(&BODY)),
         (&[("robot", "Joints")], all(&JOINT)),

@@ -3,8 +3,8 @@
 use crate::figures::FIGURE;
 use crate::keys::MOTION;
 use crate::keys::{
-    DATA, DESIGN, ELEMENT, EVENT, FIT, Keys, MAX_BLOCKS, METRIC, Need, OUTPUT, PARAMETER, ROBOT, SENSITIVITY, SOLVER, SWEEP,
-    Shape, TIME, key,
+    DATA, DESIGN, ELEMENT, EVENT, FIT, Keys, MAX_BLOCKS, METRIC, Need, OUTPUT, PARAMETER, ROBOT, SENSITIVITY, SOLVER,
+    SWEEP, Shape, TIME, key,
 };
 
 /// The whole scenario.
