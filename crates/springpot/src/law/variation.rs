@@ -119,6 +119,17 @@ impl LawVariation {
                 numbers[k * count + p] = slope;
             }
         }
+        if let Some(heated) = law.as_heated().filter(|heated| heated.heat().shift.is_some()) {
+            let own = heated.heat().numbers().len() * count;
+            let is_moved = numbers[..own].iter().any(|slope| *slope != 0.0);
+            let warms = heated
+                .input()
+                .and_then(|input| told.input(input, count))
+                .is_some_and(|blocks| blocks.iter().any(|block| block.iter().any(|change| *change != 0.0)));
+            if is_moved || warms || heated.heat().thermal.is_some() {
+                heated.by_a_clock_that_moves(state)?;
+            }
+        }
         let variables = vec![0.0; state.size().variables * count];
         let mut begun = Self { count, numbers, memories: Vec::new(), variables };
         let mut memories = Vec::new();

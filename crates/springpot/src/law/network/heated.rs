@@ -122,6 +122,20 @@ impl Heated {
         Self { moved, ..self }
     }
 
+    /// Whether derivatives of it are known where parameters move its clock.
+    ///
+    /// # Errors
+    /// What there are none of.
+    pub(in crate::law) fn by_a_clock_that_moves(&self, state: &State) -> Result<(), String> {
+        let mut unknown = state.is_singular().then(|| "a singular start by a clock that a parameter moves".to_owned());
+        self.law.ask().for_each_leaf(&mut |part| {
+            if part.size().variables > 0 && part.slips().is_none() {
+                unknown = Some(format!("{} by a clock that a parameter moves", part.name()));
+            }
+        });
+        unknown.map_or(Ok(()), Err)
+    }
+
     /// What temperature does to it.
     pub fn heat(&self) -> &Heat {
         &self.heat
