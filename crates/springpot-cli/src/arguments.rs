@@ -50,7 +50,7 @@ killed goes on with --resume, and its results are those of an uninterrupted run.
 Examples:
   springpot sensitivity arm.toml
   springpot sensitivity arm.toml --by element.strut.k,element.strut.to.point.0
-  springpot sensitivity arm.toml --by element.strut.k --of 'q.*,strut.force' --check
+  springpot sensitivity arm.toml --by element.strut.k --of 'q.*' --check
 
 Runs the scenario as `run --sensitivity` does, into a folder of results, and prints which parameters change which columns most, the gradients of \
 its metrics, and what the derivatives take of steps. Without --by the parameters are those of [sensitivity], or all [[parameter]]. With --check the \
