@@ -125,6 +125,15 @@ fn an_oscillator_passes_zero_on_time_a_thousand_times() {
     }
 }
 
+/// No law is asked for what only the motion tells.
+#[test]
+fn strokes_and_rates_of_elements_alone() {
+    let text = event("half", "when = \"e.stroke - 0.5\"") + &event("still", "when = \"e.rate\"");
+    let run = done(&oscillator(&text, 6.0, "rtol = 1e-9"));
+    near(&run.at(0, "t"), &[PI / 3.0, 5.0 * PI / 3.0], 1e-7, "half");
+    near(&run.at(1, "t"), &[PI], 1e-7, "still");
+}
+
 #[test]
 fn directions_and_the_start() {
     let text = [

@@ -1,6 +1,6 @@
 //! Robots that are controlled: derivatives by gains, orders, references and limits, and by all else through them.
 
-use super::{ARM, compare, plan, rows, said, scenario};
+use super::{ARM, compare, compare_within, plan, rows, said, scenario};
 use springpot::Simulation;
 
 /// The arm with a springpot across its second joint under this controller.
@@ -205,8 +205,8 @@ fn inputs_that_jump_before_laws_that_remember() {
             ("robot.body.two.mass", 2e-3),
             ("motion.start.q.q2", 1e-3),
         ];
-        // Hysteresis bends where its rate turns: the run is to know more than elsewhere.
-        compare(&text.replace("rtol = 1e-10", "rtol = 1e-11"), &SEEN[..4], &paths);
+        // Hysteresis bends where its rate turns: behind that its derivatives are known to 2.5e-7.
+        compare_within(1e-6, &text.replace("rtol = 1e-10", "rtol = 1e-11"), &SEEN[..4], &paths);
     }
 }
 
@@ -326,7 +326,7 @@ fn what_controllers_do_not_know_is_refused() {
     let mut asked = scenario(&fed_back("0.2*step(t - level)*abs(v.q2)", "q1 = 0.1"));
     asked.differentiate("constants.level").unwrap();
     let said = said(&asked);
-    assert!(said.contains("`step` bends or jumps where the constant has it"), "{said}");
+    assert!(said.contains("`step` jumps where the constant has it"), "{said}");
 }
 
 #[test]

@@ -8,6 +8,7 @@ use crate::law::{InputValue, Point, RuleError, State, heat};
 use crate::model::Model;
 use crate::motion::{Trajectory, Wanted};
 use crate::observe::Snapshot;
+use crate::observe::evaluation::ElementRow;
 pub(crate) use crate::observe::evaluation::{ElementEvaluation, Evaluation};
 use crate::observe::{ElementQuantity, Needs, Quantity};
 use crate::system::System;
@@ -75,7 +76,8 @@ impl Snapshot {
     pub(crate) fn new(system: &System) -> Self {
         Self {
             evaluation: Evaluation::new(system),
-            elements: Vec::new(),
+            // Of which nothing is known until their laws are asked.
+            elements: vec![ElementRow::UNKNOWN; system.elements.len()],
             actuators: 0.0,
             joints: 0.0,
             residual: 0.0,

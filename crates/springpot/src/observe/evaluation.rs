@@ -52,6 +52,16 @@ pub(crate) struct ElementRow {
 }
 
 impl ElementRow {
+    /// Before its law was asked.
+    pub(crate) const UNKNOWN: Self = Self {
+        observation: Observation { derivative: f64::NAN, regular: f64::NAN, singular: 0.0, stored: None },
+        electric: None,
+        leaves: Vec::new(),
+        dissipated: f64::NAN,
+        input: f64::NAN,
+        warmth: None,
+    };
+
     /// Q_b = −F·∂y/∂q_b.
     pub(super) fn generalized_force(&self, state: &ElementEvaluation, b: usize) -> f64 {
         -self.observation.force() * state.gradient[b]

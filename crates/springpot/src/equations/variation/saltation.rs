@@ -23,6 +23,9 @@ const JUMP: f64 = 1e-5;
 /// A guard this near its zero is on it, in units of what it goes over in the step.
 const ON_IT: f64 = 1e-6;
 
+/// What rounding makes of a stroke, as a share of it and of its coordinate.
+const ROUNDINGS: f64 = 256.0 * f64::EPSILON;
+
 /// A switch this near is here, as a share of the time.
 const HERE: f64 = 1e-12;
 
@@ -156,7 +159,9 @@ impl Variation {
                 all
             };
             let own = guards(&self.system.elements[e].law, rate);
-            for (g, guard) in own.iter().enumerate().filter(|(_, guard)| guard.value.abs() <= ON_IT * h * rate.abs()) {
+            // A step may be so short that rounding of the coordinate is more.
+            let near = ON_IT * h * rate.abs() + ROUNDINGS * (element.reading.coordinate.abs() + value.abs());
+            for (g, guard) in own.iter().enumerate().filter(|(_, guard)| guard.value.abs() <= near) {
                 let change = |own: &Self, p: usize| {
                     let law = own.law_by(e, p).unwrap_or(&own.system.elements[e].law);
                     guards(law, own.elements[e].stroke[p])[g].slope
