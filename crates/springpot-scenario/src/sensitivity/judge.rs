@@ -17,7 +17,7 @@ use crate::text::glob::matches;
 use crate::text::names;
 use crate::text::refusal::{Place, RefusalKind};
 use springpot::identification::{Prior, Scale};
-use springpot::observe::Quantity;
+use springpot::observe::{Observables, Quantity};
 use springpot::sensitivity::{DerivativeColumn, Parameter, Sensitivity, has_derivative};
 use springpot::table::Column;
 use std::collections::HashMap;
@@ -247,12 +247,11 @@ fn columns(root: &Table<'_>, plan: &Plan, asked: &Asked, parameters: &[Parameter
     };
     let all = plan.columns();
     let written = read_columns(root)?;
-    let observables = plan.acting_observables();
-    let acting: HashMap<String, Quantity> = observables
-        .quantities()
-        .into_iter()
-        .map(|quantity| (observables.named(quantity).to_string(), quantity))
-        .collect();
+    let by_name = |observables: &Observables| -> HashMap<String, Quantity> {
+        let quantities = observables.quantities().into_iter();
+        quantities.map(|quantity| (observables.named(quantity).to_string(), quantity)).collect()
+    };
+    let [acting, described] = [plan.acting_observables(), plan.observables()].each_ref().map(by_name);
     let globs = asked.of.as_deref().or(written.as_deref());
     for glob in asked.of.iter().flatten() {
         if !all.iter().any(|column| matches(&glob.text, &column.name)) {
@@ -267,8 +266,8 @@ fn columns(root: &Table<'_>, plan: &Plan, asked: &Asked, parameters: &[Parameter
             continue;
         }
         let quantity = acting.get(&column.name);
-        let is_absent = quantity.is_none() && plan.lacks(&column.name);
-        if !is_absent && !quantity.copied().is_some_and(has_derivative) {
+        // Of an element that is not enabled as where it is: all cases have the same columns.
+        if !described.get(&column.name).copied().is_some_and(has_derivative) {
             if let Some(glob) = asked.of.iter().flatten().find(|glob| glob.text == column.name) {
                 let message = format!("{:?} cannot be differentiated: no derivative is known of it", column.name);
                 return refuse(&glob.place, RefusalKind::Rule, message, "leave it out of `of`".to_owned());
@@ -285,12 +284,9 @@ fn columns(root: &Table<'_>, plan: &Plan, asked: &Asked, parameters: &[Parameter
         if columns.iter().chain(&for_metrics).any(|column| column.name == told) {
             continue;
         }
-        match (names.get(&*metric.of), acting.get(&metric.of)) {
-            (Some(column), Some(quantity)) if has_derivative(*quantity) => {
-                by_parameters(column, Some(quantity), parameters, &mut for_metrics, &mut known);
-            }
-            (Some(column), None) if plan.lacks(&column.name) => {
-                by_parameters(column, None, parameters, &mut for_metrics, &mut known);
+        match names.get(&*metric.of) {
+            Some(column) if described.get(&metric.of).copied().is_some_and(has_derivative) => {
+                by_parameters(column, acting.get(&metric.of), parameters, &mut for_metrics, &mut known);
             }
             _ => no_gradient.push(metric.name.clone()),
         }

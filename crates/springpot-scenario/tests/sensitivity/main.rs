@@ -391,3 +391,21 @@ rtol = 1e-10
     asked.differentiate("robot.body.panda_link4.mass").unwrap();
     assert!(said(&asked).contains("numbers in a URDF file have no path"), "{}", said(&asked));
 }
+
+/// Cases of elements that are not enabled have the columns of those that are.
+#[test]
+fn cases_have_the_same_columns() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/point_to_point.toml");
+    let text = std::fs::read_to_string(path).unwrap();
+    let mut swept = scenario(&text);
+    swept.differentiate("motion.controller.kp.q1,robot.body.forearm.mass").unwrap();
+    let cases = swept.cases(&Catalog::standard()).unwrap();
+    let columns = |case: usize| {
+        let plan = cases.plan(case).unwrap_or_else(|refusals| panic!("{refusals}"));
+        let names: Vec<String> = plan.row_columns().iter().map(|column| column.name.to_string()).collect();
+        names
+    };
+    let first = columns(0);
+    assert!(first.iter().any(|name| name == "d(thermo.force)/d(motion.controller.kp.q1)"));
+    assert!((1..4).all(|case| columns(case) == first));
+}
