@@ -2,30 +2,28 @@
 
 mod control;
 mod inertias;
+mod rows;
 mod saltation;
 mod singular;
+mod state;
 
 use super::assembly::Equations;
-use super::control::{ControlVariation, ControlVariationState};
+use super::control::ControlVariation;
 use super::node::Node;
 use super::resistance::add_tangents;
 use super::solve::Solve;
 use crate::collocation::STAGES;
-use crate::dynamics::{
-    Kinematics, RneaDerivatives, Workspace, add_gravity_effort, add_inertia_effort, coriolis, gravity, kinetic_energy,
-    point_jacobian, potential_energy,
-};
+use crate::dynamics::{Kinematics, RneaDerivatives, Workspace, add_gravity_effort, add_inertia_effort};
 use crate::elements::{Forces, Pull, Reading};
 use crate::law::variation::{LawVariation, ObservationVariation, PointVariation, StepVariation};
 use crate::law::{Derivative, Network, Response};
 use crate::model::{FrictionLaw, Model};
-use crate::observe::{ElementQuantity, EnergyQuantity, Quantity, Snapshot};
 use crate::sensitivity::{Seed, Sensitivity, SensitivityError};
 use crate::system::{Motion, System};
 use inertias::Inertias;
 use saltation::Saltation;
-use serde::{Deserialize, Serialize};
-use singular::{Singular, SingularState};
+use singular::Singular;
+pub(crate) use state::VariationState;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -70,18 +68,6 @@ const SETTLED: f64 = 1e-12;
 
 /// The node of a row.
 pub(crate) const ROW: usize = STAGES + 1;
-
-/// What of it outlasts a step.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub(crate) struct VariationState {
-    /// Blocks of q, v and a where the next step starts.
-    motion: [Vec<f64>; 3],
-    sizes: [Vec<f64>; 2],
-    singular: SingularState,
-    laws: Vec<LawVariation>,
-    saltation: Saltation,
-    control: Option<ControlVariationState>,
-}
 
 /// An element over a step.
 #[derive(Debug)]
@@ -626,47 +612,6 @@ impl Variation {
         self.take_sizes();
     }
 
-    /// What outlasts the steps.
-    pub(crate) fn save(&self) -> VariationState {
-        let [NodeVariation { q, v, a, .. }, ..] = &self.nodes;
-        let laws = self.elements.iter().map(|element| element.law.clone()).collect();
-        let control = self.control.as_ref().map(|control| control.save());
-        VariationState {
-            motion: [q.clone(), v.clone(), a.clone()],
-            sizes: self.sizes.clone(),
-            singular: self.singular.save(self.count()),
-            laws,
-            control,
-            saltation: self.saltation.clone(),
-        }
-    }
-
-    /// Goes on from what was saved where the run is at `start`; `false` where that is of another one.
-    pub(crate) fn load(&mut self, state: VariationState, equations: &Equations, start: Node) -> bool {
-        let VariationState { motion: [q, v, a], sizes, singular, laws, control, saltation } = state;
-        let (blocks, count) = (self.sizes[0].len(), self.count());
-        if !self.singular.load(singular, count)
-            || laws.len() != self.elements.len()
-            || !saltation.fits(self.count())
-            || [&q, &v, &a].into_iter().chain(&sizes).any(|own| own.len() != blocks)
-        {
-            return false;
-        }
-        let controls = match (&mut self.control, control, &equations.control) {
-            (Some(own), Some(state), Some(run)) => own.load(run, state),
-            (own, state, _) => own.is_none() && state.is_none(),
-        };
-        if !controls {
-            return false;
-        }
-        let [node, ..] = &mut self.nodes;
-        (node.q, node.v, node.a, self.sizes) = (q, v, a, sizes);
-        self.saltation = saltation;
-        self.elements.iter_mut().zip(laws).for_each(|(element, law)| element.law = law);
-        self.see_start(equations, start);
-        true
-    }
-
     /// What changes of the force of element `e` at node `i` (from 1), parameter by parameter.
     pub(crate) fn force(&self, response: &Response, e: usize, i: usize, force: &mut [f64]) {
         let (count, element) = (self.count(), &self.elements[e]);
@@ -677,176 +622,6 @@ impl Variation {
             let told = element.stroke[own.clone()].iter().zip(&element.rate[own]);
             force.iter_mut().zip(told).for_each(|(force, (x, rate))| *force += by_stroke * x + by_rate * rate);
         }
-    }
-
-    /// Whether what changes of a quantity is what changes of the motion alone.
-    pub(crate) fn is_of_motion(of: Quantity) -> bool {
-        matches!(of, Quantity::Time | Quantity::Coordinate(_) | Quantity::Velocity(_) | Quantity::Acceleration(_))
-    }
-
-    /// Works out what changes at a row where the run is at `snapshot`, whose motion changes as node [`ROW`] has it: at θ of the step at hand, or
-    /// between two.
-    pub(crate) fn read(&mut self, equations: &Equations, theta: Option<f64>, snapshot: &Snapshot) {
-        let evaluation = &snapshot.evaluation;
-        let force: Vec<f64> = (0..self.elements.len()).map(|e| snapshot.force(e)).collect();
-        self.move_row(equations, theta, snapshot);
-        self.see(
-            equations,
-            ROW,
-            Node { t: evaluation.t, q: &evaluation.q, v: &evaluation.v, a: &evaluation.a },
-            &force,
-        );
-        self.steer(ROW, equations, &force);
-        self.feed_back(ROW);
-        self.push_at(ROW, theta, equations);
-        let count = self.count();
-        for e in 0..self.elements.len() {
-            self.measure(e, ROW);
-            let ElementVariation { law, stroke, rate, inputs, row: [force, stored, derivative], .. } =
-                &mut self.elements[e];
-            let own = |blocks: &'_ Vec<f64>| blocks.len() / (ROW + 1) * ROW;
-            let [values, rates] = &*inputs;
-            let told = PointVariation {
-                stroke: &stroke[ROW * count..],
-                rate: &rate[ROW * count..],
-                inputs: [&values[own(values)..], &rates[own(rates)..]],
-                step: theta.map(|_| of_step(count, [stroke, rate], inputs)),
-                passed: None,
-            };
-            force.fill(0.0);
-            stored.fill(0.0);
-            derivative.fill(0.0);
-            let mut sum = ObservationVariation { force, stored, derivative };
-            let point = evaluation.elements[e].point(evaluation.t);
-            match theta {
-                Some(theta) => equations.bank.vary_at(e, (theta, &point), &told, law, &mut sum),
-                None => equations.bank.vary_now(e, &point, &told, law, &mut sum),
-            }
-            if self.singular.is_there {
-                let from = evaluation.t;
-                let [change, ..] = self.singular_at(equations, e, from, snapshot);
-                let [force, ..] = &mut self.elements[e].row;
-                force.iter_mut().zip(change).for_each(|(force, change)| *force += change);
-            }
-        }
-    }
-
-    /// What changes of a quantity at the row that was read last, parameter by parameter, no number where that is lost; `None` where nothing is known
-    /// of it.
-    pub(crate) fn values(&self, quantity: Quantity, snapshot: &Snapshot) -> Option<Vec<f64>> {
-        let mut values = self.finite_values(quantity, snapshot)?;
-        values
-            .iter_mut()
-            .zip(&self.saltation.lost)
-            .filter(|(_, lost)| lost.is_some())
-            .for_each(|(value, _)| *value = f64::NAN);
-        Some(values)
-    }
-
-    pub(super) fn finite_values(&self, quantity: Quantity, snapshot: &Snapshot) -> Option<Vec<f64>> {
-        let (count, node, model) = (self.count(), &self.nodes[ROW], &self.system.model);
-        let block = |blocks: &[f64], k: usize| blocks[k * count..(k + 1) * count].to_vec();
-        let of_velocity = |blocks: &[f64], k: usize| block(blocks, self.own_v[k]);
-        let each = |value: &dyn Fn(usize) -> f64| (0..count).map(value).collect();
-        let along = |slopes: &[f64], blocks: &[f64], p: usize| -> f64 {
-            slopes.iter().enumerate().map(|(k, slope)| slope * blocks[k * count + p]).sum()
-        };
-        Some(match quantity {
-            Quantity::Time => vec![0.0; count],
-            // One degree a joint: coordinates and velocities go together.
-            Quantity::Coordinate(k) => of_velocity(&node.q, k),
-            Quantity::Velocity(k) => of_velocity(&node.v, k),
-            Quantity::Acceleration(k) => of_velocity(&node.a, k),
-            Quantity::Torque(k) if snapshot.evaluation.driven[k].is_some() => {
-                each(&|p| self.driven(k, p, node.t) + self.steered(k, p, snapshot))
-            }
-            Quantity::Torque(k) => {
-                let row = self.own_v[k];
-                let mut sum = vec![0.0; count];
-                self.add_unbalanced(ROW, row, &mut sum);
-                self.add_pulled(ROW, row, |e| &self.elements[e].row[0], &mut sum);
-                sum
-            }
-            Quantity::Element(e, of) => {
-                let (element, [gradient, _]) = (&self.elements[e], &node.gradients[e]);
-                match of {
-                    ElementQuantity::Length => each(&|p| along(gradient, &node.q, p)),
-                    ElementQuantity::Stroke => block(&element.stroke, ROW),
-                    ElementQuantity::Rate => block(&element.rate, ROW),
-                    ElementQuantity::Force => element.row[0].clone(),
-                    ElementQuantity::GeneralizedForce(k) => {
-                        // Q_k = −F·∂y/∂q_k.
-                        let (row, n) = (self.own_v[k], self.nv());
-                        let turned = &node.hessians[e][row * n..(row + 1) * n];
-                        let force = snapshot.force(e);
-                        each(&|p| -(element.row[0][p] * gradient[row] + force * along(turned, &node.q, p)))
-                    }
-                    ElementQuantity::Stored => element.row[1].clone(),
-                    ElementQuantity::Derivative => {
-                        let law = &self.system.elements[e].law;
-                        let order = law.reported_order(&snapshot.evaluation.elements[e].point(node.t));
-                        match (law.has_memories(), law.as_heated().is_some()) {
-                            (true, _) => element.row[2].clone(),
-                            // Of a dashpot the rate by another clock.
-                            (false, true) if order > 0.0 => return None,
-                            _ => block(if order > 0.0 { &element.rate } else { &element.stroke }, ROW),
-                        }
-                    }
-                    ElementQuantity::InputValue(i) => {
-                        let [values, _] = &element.inputs;
-                        let inputs = values.len() / ((ROW + 1) * count);
-                        if inputs == 0 { vec![0.0; count] } else { block(values, ROW * inputs + i) }
-                    }
-                    _ => return None,
-                }
-            }
-            Quantity::Gripper(axis) => {
-                let jacobian = point_jacobian(model, &node.kinematics, self.system.gripper.as_ref()?);
-                let line = &jacobian[axis.index() * self.nv()..][..self.nv()];
-                each(&|p| along(line, &node.q, p))
-            }
-            Quantity::Energy(EnergyQuantity::Kinetic) => {
-                // (M v)·δv + (Cᵀ v)·δq, since Ṁ = C + Cᵀ.
-                let (n, v) = (self.nv(), &node.v_now);
-                let coriolis = coriolis(model, &node.kinematics);
-                let sum =
-                    |entry: &dyn Fn(usize) -> f64| -> f64 { v.iter().enumerate().map(|(c, v)| entry(c) * v).sum() };
-                let momentum: Vec<f64> = (0..n).map(|k| sum(&|c| node.slopes.d_a[k * n + c])).collect();
-                let bent: Vec<f64> = (0..n).map(|k| sum(&|c| coriolis[c * n + k])).collect();
-                let of_inertias = self.of_seeds(|seed| match seed {
-                    Seed::Inertia(change) => kinetic_energy(change, &node.kinematics),
-                    _ => 0.0,
-                });
-                each(&|p| along(&momentum, &node.v, p) + along(&bent, &node.q, p) + of_inertias[p])
-            }
-            Quantity::Energy(EnergyQuantity::Potential) => {
-                let weights = gravity(model, &node.kinematics);
-                let of_robot = self.of_seeds(|seed| match seed {
-                    Seed::Inertia(change) | Seed::Gravity(change) => potential_energy(change, &node.kinematics),
-                    _ => 0.0,
-                });
-                each(&|p| along(&weights, &node.q, p) + of_robot[p])
-            }
-            Quantity::GripperError => {
-                // (H − H_d)·(δH − δH_d)/|H − H_d|. Along a given motion nothing moves.
-                let Some(control) = &self.control else { return Some(vec![0.0; count]) };
-                let (wanted, moves) = control.gripper();
-                let site = self.system.gripper.as_ref()?;
-                let (jacobian, at) = (point_jacobian(model, &node.kinematics, site), node.kinematics.position(site).0);
-                let off: [f64; 3] = std::array::from_fn(|axis| at[axis] - wanted[axis]);
-                let distance = off.iter().map(|off| off * off).sum::<f64>().sqrt();
-                let moved = |axis: usize, p: usize| {
-                    along(&jacobian[axis * self.nv()..][..self.nv()], &node.q, p) - moves[axis][p]
-                };
-                each(&|p| {
-                    let moved: [f64; 3] = std::array::from_fn(|axis| moved(axis, p));
-                    let stays = moved == [0.0; 3];
-                    let sum: f64 = off.iter().zip(moved).map(|(off, moved)| off * moved).sum();
-                    if stays { 0.0 } else { sum / distance }
-                })
-            }
-            Quantity::Energy(_) | Quantity::Derivative(_) => return None,
-        })
     }
 
     /// The law of element `e` built of numbers that change with parameter `p`, where it has any.
@@ -860,20 +635,6 @@ impl Variation {
     /// What the seeds of each parameter give in sum.
     pub(super) fn of_seeds(&self, of: impl Fn(&Seed) -> f64) -> Vec<f64> {
         self.by.parameters.iter().map(|parameter| parameter.seeds.iter().map(&of).sum()).collect()
-    }
-
-    /// What changes of the force of the actuator of velocity `k`.
-    fn driven(&self, k: usize, p: usize, t: f64) -> f64 {
-        if let Some(held) = self.saltation.held.drive(k) {
-            return held[p];
-        }
-        let seeds = self.by.parameters[p].seeds.iter();
-        seeds
-            .map(|seed| match seed {
-                Seed::Drive { velocity, by } if *velocity == k => by.value(t),
-                _ => 0.0,
-            })
-            .sum()
     }
 }
 
