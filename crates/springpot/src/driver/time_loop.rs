@@ -521,7 +521,8 @@ impl Driver {
     ) -> Result<Option<f64>, RunError> {
         let acting = self.acting();
         let cx = Context { sampled: &acting, ..cx };
-        let Some(Target { from, to, behind, .. }) = self.step else {
+        // Where the step at hand starts nothing of it is in the past.
+        let Some(Target { from, to, behind, .. }) = self.step.filter(|step| at > step.from) else {
             self.solver.stepper_mut().complete(cx, &mut self.recorder, 0)?;
             snapshot.evaluation.clone_from(&self.recorder.evaluations[0]);
             self.recorder.read(cx, None, row, snapshot)?;

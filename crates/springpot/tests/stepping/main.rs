@@ -114,6 +114,24 @@ fn going_to_times_ends_steps_there() {
 }
 
 #[test]
+fn the_start_of_a_step_is_the_end_of_the_one_before() {
+    for (name, system, settings) in systems() {
+        let mut simulation = start(&system, &settings);
+        for _ in 0..5 {
+            assert!(simulation.step().unwrap(), "{name}");
+            let (t, before) = (simulation.t(), simulation.snapshot().unwrap());
+            simulation.step().unwrap();
+            let again = simulation.interpolate(t).unwrap();
+            for quantity in system.observables().quantities() {
+                let [a, b] = [&before, &again].map(|shown| shown.value(quantity));
+                let near = (a - b).abs() <= 1e-7 * (a.abs() + b.abs() + 1e-3) || a.is_nan() || b.is_nan();
+                assert!(near, "{name}: {quantity:?} at {t}: {a} and {b}");
+            }
+        }
+    }
+}
+
+#[test]
 fn pauses_between_tries_change_no_bit() {
     for (name, system, settings) in systems() {
         let (mut straight, mut paused) = (start(&system, &settings), start(&system, &settings));
