@@ -4,12 +4,13 @@ use super::figures;
 use super::outcome::{Outcome, Status};
 use super::record::{json, name, side};
 use crate::numbers::{count, rough, short};
+use crate::table::disk::Disk;
 use springpot::identification::Side;
 use springpot_scenario::{DataKind, Scenario};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
-use std::{fs, io};
 
 /// Writes fit.json, parameters.csv, correlation.csv, residuals.csv, fitted.toml with the files that it names, and the figures into a folder;
 /// remarks on the figures are returned.
@@ -17,9 +18,9 @@ use std::{fs, io};
 /// # Errors
 /// Those of the disk.
 pub fn save(outcome: &Outcome, folder: &Path) -> io::Result<Vec<String>> {
-    let drawn = folder.join("figures");
-    fs::create_dir_all(&drawn)?;
-    let put = |file: &str, text: String| whole(&folder.join(file), text.as_bytes());
+    let (disk, drawn) = (Disk::default(), folder.join("figures"));
+    disk.create_folders(&drawn)?;
+    let put = |file: &str, text: String| whole(&disk, &folder.join(file), text.as_bytes());
     put("fit.json", format!("{:#}\n", json(outcome)))?;
     put("parameters.csv", parameters(outcome))?;
     put("correlation.csv", correlation(outcome))?;
@@ -33,10 +34,10 @@ pub fn save(outcome: &Outcome, folder: &Path) -> io::Result<Vec<String>> {
             for (name, file) in &portable.files {
                 let target = folder.join(name);
                 if let Some(above) = target.parent() {
-                    fs::create_dir_all(above)?;
+                    disk.create_folders(above)?;
                 }
                 if target.canonicalize().ok().as_ref() != Some(file) {
-                    fs::copy(file, &target)?;
+                    whole(&disk, &target, &disk.read(file)?)?;
                 }
             }
             portable.text
@@ -48,8 +49,8 @@ pub fn save(outcome: &Outcome, folder: &Path) -> io::Result<Vec<String>> {
     for (file, plot) in figures::all(outcome) {
         match plot.render() {
             Ok(rendered) => {
-                whole(&drawn.join(format!("{file}.svg")), rendered.svg.as_bytes())?;
-                whole(&drawn.join(format!("{file}.png")), &rendered.png)?;
+                whole(&disk, &drawn.join(format!("{file}.svg")), rendered.svg.as_bytes())?;
+                whole(&disk, &drawn.join(format!("{file}.png")), &rendered.png)?;
                 remarks.extend(rendered.remarks.iter().map(|remark| format!("figures/{file}: {remark}")));
             }
             Err(error) => remarks.push(format!("figures/{file} is not drawn: {error}")),
@@ -59,11 +60,11 @@ pub fn save(outcome: &Outcome, folder: &Path) -> io::Result<Vec<String>> {
 }
 
 /// A file that is there whole or as it was.
-fn whole(file: &Path, bytes: &[u8]) -> io::Result<()> {
+fn whole(disk: &Disk, file: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut beside = PathBuf::from(file);
     beside.as_mut_os_string().push(".part");
-    fs::write(&beside, bytes)?;
-    fs::rename(&beside, file)
+    disk.create(&beside)?.write_all(bytes)?;
+    disk.rename(&beside, file)
 }
 
 /// A number as files have it; nothing where it is none.
