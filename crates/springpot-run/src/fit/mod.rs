@@ -1,6 +1,6 @@
 //! Fits of laws and robots to measurements: `springpot fit`.
 //!
-//! [`Fitting`](springpot_scenario::Fitting) has the records and what is sought; [`fit()`] finds it, [`look()`] says beforehand what the records can
+//! [`Fitting`] has the records and what is sought; [`fit()`] finds it, [`look()`] says beforehand what the records can
 //! determine. [`Problem`] has residuals and their derivatives for other minimisers.
 
 mod ahead;
