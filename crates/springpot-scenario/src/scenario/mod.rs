@@ -5,7 +5,7 @@ mod inputs;
 mod lone;
 pub(crate) mod overrides;
 mod portable;
-mod put;
+pub(crate) mod put;
 pub(crate) mod root;
 mod schema;
 pub(crate) mod written;

@@ -1,4 +1,4 @@
-//! A scenario as a text with what was set put in, everything else as it is written.
+//! A scenario as a text with other values put in, everything else as it is written.
 
 use super::Scenario;
 use super::root::SCENARIO;
@@ -11,46 +11,74 @@ use springpot::law::Catalog;
 use std::cmp::Reverse;
 use std::ops::Range;
 
-/// What takes the place of a stretch of the text.
-type Edit = (Range<usize>, String);
-
 impl Scenario {
     /// The text with the values that were set put in; comments stay. A key that is taken out stays too, and what finds no place is told in a comment at
     /// its end.
     pub fn with_values(&self, catalog: &Catalog) -> String {
         let (tables, robots) = (CsvCache::default(), UrdfCache::default());
         let ctx = Context::new(catalog, &self.folder, &tables, &robots).of_whole(&SCENARIO);
-        let (mut edits, mut lost): (Vec<Edit>, Vec<&str>) = Default::default();
+        let mut edits = Edits::default();
         for set in &self.overrides {
             let target = path::resolve(&ctx, &self.document, &set.path, &set.place).ok();
-            let done = target.zip(set.value.as_ref()).and_then(|(target, value)| {
-                let text = match &value.value {
-                    Value::Text(text) => toml_text(text),
-                    _ => value.place.text().to_owned(),
-                };
-                put(&self.document, &target.steps, text, &mut edits)
-            });
-            if done.is_none() {
-                lost.push(&set.path);
+            match target.zip(set.value.as_ref()) {
+                Some((target, value)) => edits.put(&self.document, &target.steps, written(value), &set.path),
+                None => edits.lose(&set.path),
             }
         }
-        let mut text = self.source.text.to_string();
+        edits.applied(&self.source.text, "was set, and has")
+    }
+}
+
+/// A value of the command line as it stands in a file.
+pub(crate) fn written(value: &Node) -> String {
+    match &value.value {
+        Value::Text(text) => toml_text(text),
+        _ => value.place.text().to_owned(),
+    }
+}
+
+/// What is put into the text of a scenario.
+#[derive(Debug, Default)]
+pub(crate) struct Edits {
+    /// What takes the place of stretches of the text.
+    spans: Vec<(Range<usize>, String)>,
+    /// What finds no place in it.
+    lost: Vec<String>,
+}
+
+impl Edits {
+    /// Puts a text where steps lead, to what is called `name`.
+    pub(crate) fn put(&mut self, document: &Node, steps: &[Step], text: String, name: &str) {
+        match place(document, steps, text) {
+            Some(edit) => self.spans.push(edit),
+            None => self.lose(name),
+        }
+    }
+
+    fn lose(&mut self, name: &str) {
+        self.lost.push(name.to_owned());
+    }
+
+    /// The text with all of it; what found no place is told in comments at its end, that it `has` none.
+    pub(crate) fn applied(self, text: &str, has: &str) -> String {
+        let Self { spans, lost } = self;
+        let mut text = text.to_owned();
         // From the end, so that places before stay; of insertions at one place the first comes first.
-        let mut order: Vec<usize> = (0..edits.len()).collect();
-        order.sort_by_key(|k| (Reverse(edits[*k].0.start), Reverse(*k)));
+        let mut order: Vec<usize> = (0..spans.len()).collect();
+        order.sort_by_key(|k| (Reverse(spans[*k].0.start), Reverse(*k)));
         for k in order {
-            let (span, with) = &edits[k];
+            let (span, with) = &spans[k];
             text.replace_range(span.clone(), with);
         }
         for name in lost {
-            text.push_str(&format!("# {name} was set, and has no place in this file\n"));
+            text.push_str(&format!("# {name} {has} no place in this file\n"));
         }
         text
     }
 }
 
-/// Puts a text where steps lead; `None` where there is no place for it.
-fn put(document: &Node, steps: &[Step], text: String, edits: &mut Vec<Edit>) -> Option<()> {
+/// What is written where for a text where steps lead; `None` where there is no place for it.
+fn place(document: &Node, steps: &[Step], text: String) -> Option<(Range<usize>, String)> {
     let mut node = document;
     for (at, step) in steps.iter().enumerate() {
         let next = match (step, &node.value) {
@@ -58,15 +86,14 @@ fn put(document: &Node, steps: &[Step], text: String, edits: &mut Vec<Edit>) -> 
             (Step::Key(key), Value::Table(_)) => node.get(key).map(|node| &**node),
             _ => None,
         };
-        let Some(next) = next else { return insert(node, &steps[at..], &text, edits) };
+        let Some(next) = next else { return insertion(node, &steps[at..], &text) };
         node = next;
     }
-    edits.push((node.place.span.clone(), text));
-    Some(())
+    Some((node.place.span.clone(), text))
 }
 
-/// Writes keys that are not there into a table.
-fn insert(table: &Node, rest: &[Step], text: &str, edits: &mut Vec<Edit>) -> Option<()> {
+/// The same of keys that are not yet in a table.
+fn insertion(table: &Node, rest: &[Step], text: &str) -> Option<(Range<usize>, String)> {
     let key = |step: &Step| match step {
         Step::Key(key) => Some(toml_key(key)),
         Step::Index(_) => None,
@@ -75,17 +102,15 @@ fn insert(table: &Node, rest: &[Step], text: &str, edits: &mut Vec<Edit>) -> Opt
     let line = format!("{} = {text}", keys.join("."));
     let (source, span, entries) = (&table.place.source.text, &table.place.span, table.entries()?);
     if source.get(span.clone()).is_some_and(|own| own.starts_with('{') && own.ends_with('}')) {
-        edits.push(match entries.last() {
+        return Some(match entries.last() {
             Some(last) => (last.node.place.span.end..last.node.place.span.end, format!(", {line}")),
             None => (span.start + 1..span.start + 1, format!(" {line} ")),
         });
-        return Some(());
     }
     // Behind the last of its entries that stands in the lines below its header.
     let is_line = |node: &Node| !matches!(node.value, Value::Table(_)) || node.place.text().starts_with('{');
     let ends = entries.iter().filter(|entry| is_line(&entry.node)).map(|entry| entry.node.place.span.end);
     let last = ends.max()?;
     let end = source[last..].find('\n').map_or(source.len(), |at| last + at);
-    edits.push((end..end, format!("\n{line}")));
-    Some(())
+    Some((end..end, format!("\n{line}")))
 }
