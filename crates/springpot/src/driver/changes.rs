@@ -60,17 +60,11 @@ impl Driver {
         variation.switch(equations, after, switches, &all);
     }
 
-    /// What an event that acts at `t` changes by parameters.
-    ///
-    /// # Errors
-    /// What a row there may show.
-    pub(super) fn vary_event(&mut self, cx: Context, number: usize, t: f64) -> Result<(), RunError> {
-        let event = &cx.system.watched_events()[number];
-        let Some(later) = self.passage(cx, number, t)? else { return Ok(()) };
+    /// What an event sets at a time, s, which comes later by so much, parameter by parameter.
+    pub(super) fn vary_event(&mut self, cx: Context, number: usize, at: (f64, Vec<f64>)) {
         if let Recorder { equations, variation: Some(variation), .. } = &mut self.recorder {
-            variation.set(equations, (number, event), (t, later));
+            variation.set(equations, (number, &cx.system.watched_events()[number]), at);
         }
-        Ok(())
     }
 
     /// An input is held from outside at a value that no parameter moves, or given back to its signal.
@@ -120,12 +114,8 @@ impl Driver {
         }
         variation.add_when(event, (branch, t), &values, &mut changes);
         let grazes = speed.abs() <= GRAZES * parts;
-        let later = changes.into_iter().map(|change| match change {
-            0.0 => 0.0,
-            _ if grazes => f64::NAN,
-            change => -change / speed,
-        });
-        Ok(Some(later.collect()))
+        let speed = if grazes { f64::NAN } else { speed };
+        Ok(Some(changes.into_iter().map(|change| Variation::later(change, speed)).collect()))
     }
 
     /// How fast quantities change along the run at the time of `shown`; no number where nothing tells.

@@ -69,14 +69,19 @@ impl<'a> Output<'a> {
         self.write(cx, driver)
     }
 
-    /// Tells the row at the time of an event.
-    pub(super) fn event(&mut self, cx: Context, driver: &mut Driver, event: usize, at: f64) -> Result<(), RunError> {
+    /// Tells the row at the time of an event, which comes later by so much, parameter by parameter.
+    pub(super) fn event(
+        &mut self,
+        cx: Context,
+        driver: &mut Driver,
+        (event, at): (usize, f64),
+        later: &[f64],
+    ) -> Result<(), RunError> {
         driver.show(cx, at, self.written.rows, &mut self.snapshot)?;
         self.take_row(cx, driver)?;
-        let later = driver.passage(cx, event, at)?.unwrap_or_default();
-        self.follow_event(cx, driver, &later)?;
+        self.follow_event(cx, driver, later)?;
         self.tell_lost(driver);
-        self.rows.event(event, &self.row, &later)?;
+        self.rows.event(event, &self.row, later)?;
         Ok(())
     }
 

@@ -97,7 +97,7 @@ fn to_the_end(
 
 /// Writes the rows of events, and does what they do.
 fn happen(system: &System, driver: &mut Driver, output: &mut Output, events: &mut Watch) -> Result<Next, RunError> {
-    events.happen(system, driver, &mut |cx, driver, event, t| output.event(cx, driver, event, t))
+    events.happen(system, driver, &mut |cx, driver, at, later| output.event(cx, driver, at, later))
 }
 
 /// Ends a run before its time.

@@ -39,8 +39,8 @@ pub(crate) struct WatchState {
     together: (f64, u32),
 }
 
-/// Is told of an event at a time, s, of the step at hand.
-pub(crate) type Tell<'a> = dyn FnMut(Context, &mut Driver, usize, f64) -> Result<(), RunError> + 'a;
+/// Is told of an event at a time, s, of the step at hand, and of how much later it comes, parameter by parameter ([`Driver::passage`]).
+pub(crate) type Tell<'a> = dyn FnMut(Context, &mut Driver, (usize, f64), &[f64]) -> Result<(), RunError> + 'a;
 
 /// What becomes of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -243,17 +243,20 @@ impl Watch {
         }
         let before = self.state.held.clone();
         let cx = Context { held: &before, ..system.context() };
-        for passage in &passages {
-            tell(cx, driver, passage.event, passage.t)?;
-        }
         let events = system.watched_events();
+        let mut moved = Vec::new();
+        for passage in &passages {
+            let later = driver.passage(cx, passage.event, passage.t)?;
+            tell(cx, driver, (passage.event, passage.t), later.as_deref().unwrap_or_default())?;
+            moved.extend(later.map(|later| (*passage, later)));
+        }
         let acting = || passages.iter().map(|passage| &events[passage.event]).filter(|event| event.acts());
         let mut held = before.clone();
         for event in acting() {
             event.set(cx.system, &mut held);
         }
-        for passage in passages.iter().filter(|passage| matches!(events[passage.event].action, Action::Set(_))) {
-            driver.vary_event(cx, passage.event, passage.t)?;
+        for (passage, later) in moved {
+            driver.vary_event(cx, passage.event, (passage.t, later));
         }
         if let Some(event) = acting().next() {
             self.count(event, last.t, driver.recorder.settings.end)?;

@@ -116,12 +116,13 @@ impl Variation {
     /// The change at the present time, `t`, comes later by δt* = −δγ/γ̇, parameter by parameter, where a function γ that changes by `of(p)` passes
     /// zero at `speed`.
     pub(crate) fn passes(&mut self, t: f64, speed: f64, of: impl Fn(&Self, usize) -> f64) {
-        let change = |p: usize| match of(self, p) {
-            0.0 => 0.0,
-            change => -change / speed,
-        };
-        let later = (0..self.count()).map(change).collect();
+        let later = (0..self.count()).map(|p| Self::later(of(self, p), speed)).collect();
         self.comes_later(t, later);
+    }
+
+    /// How much later a function passes zero at `speed` that changes by so much: −δγ/γ̇, 0 where nothing changes.
+    pub(crate) fn later(change: f64, speed: f64) -> f64 {
+        if change == 0.0 { 0.0 } else { -change / speed }
     }
 
     /// The change at the present time, `t`, comes later by so much, s, parameter by parameter.
