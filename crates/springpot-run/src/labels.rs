@@ -85,7 +85,10 @@ fn kind(name: &str) -> Option<String> {
         Quantity::Element(_, ElementQuantity::GeneralizedForce(_)) => "generalized force Q".into(),
         Quantity::Element(
             _,
-            ElementQuantity::Stored | ElementQuantity::Dissipated | ElementQuantity::Input | ElementQuantity::Heat,
+            ElementQuantity::Stored
+            | ElementQuantity::Dissipated
+            | ElementQuantity::Input
+            | ElementQuantity::Told("heat"),
         ) => "energy".into(),
         Quantity::Time | Quantity::GripperError | Quantity::Element(..) | Quantity::Derivative(_) => {
             let symbol = quantity.symbol();

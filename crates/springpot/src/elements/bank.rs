@@ -6,8 +6,8 @@ use crate::collocation::Nodes;
 use crate::collocation::{MAX_NODES, STAGES};
 use crate::fractional::{Form, KernelError};
 use crate::law::{
-    Course, Electric, Guard, InputValue, LeafState, LocalError, Network, Observation, Point, Power, Powers, Response,
-    Start, State, Step, Term, Warmth, When,
+    Course, Guard, InputValue, LeafState, LocalError, Network, Observation, Point, Power, Powers, Response, Start,
+    State, Step, Term, Warmth, When,
 };
 use serde::{Deserialize, Serialize};
 
@@ -437,13 +437,14 @@ impl ElementBank {
         }
     }
 
-    /// The electrical side of element `e`: at θ of the step that was begun, or between two steps; none where it takes no part.
-    pub(crate) fn electric(&self, e: usize, theta: Option<f64>, at: &Point) -> Option<Electric> {
-        let Banked { law, kept, told, .. } = &self.elements[e];
-        let state = &kept.as_ref()?.state;
+    /// What the law of element `e` tells of itself ([`Network::tells`]): at θ of the step that was begun, or between two steps; nothing where it takes
+    /// no part.
+    pub(crate) fn tell(&self, e: usize, theta: Option<f64>, at: &Point, values: &mut Vec<f64>) {
+        values.clear();
+        let Banked { law, kept: Some(kept), told, .. } = &self.elements[e] else { return };
         match theta {
-            Some(theta) => law.electric(When::Within(&told.step(self.step), theta), at, state),
-            None => law.electric(When::Between, at, state),
+            Some(theta) => law.tell(When::Within(&told.step(self.step), theta), at, &kept.state, values),
+            None => law.tell(When::Between, at, &kept.state, values),
         }
     }
 

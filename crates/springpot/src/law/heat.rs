@@ -249,7 +249,7 @@ impl Entry {
             let one_clock = "to have no driver or circuit, which keeps a clock of its own, where temperature shifts it";
             RuleError::unless(heat.shift.is_none() || !law.has_clock(), one_clock, "shift")?;
             RuleError::unless(
-                !law.is_electric(),
+                law.tells().is_empty(),
                 "to have no electrical side where it has `thermal` or `expansion`",
                 "thermal",
             )?;

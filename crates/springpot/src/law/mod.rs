@@ -47,6 +47,7 @@ mod prandtl_ishlinskii;
 mod rule;
 mod standard;
 mod thermoviscoelastic;
+mod told;
 mod transient;
 mod written;
 
@@ -60,7 +61,8 @@ pub use prandtl_ishlinskii::{PrandtlIshlinskii, Stop};
 pub use rule::RuleError;
 pub use state::{State, StateMut, StateRef, StateSize};
 pub use step::{
-    Course, Electric, InputValue, LeafState, LocalError, Observation, Point, Power, Powers, Response, Start, Step, Term,
+    Course, InputValue, LeafState, LocalError, Observation, Point, Power, Powers, Response, Start, Step, Term,
 };
-pub use tangent::{AtRest, LeafAtRest, Tangent};
+pub use tangent::{AtRest, Tangent};
+pub use told::Told;
 pub use written::{NetworkText, NetworkTextError};

@@ -14,14 +14,13 @@ pub use series::Series;
 
 use super::harmonic::Sine;
 use super::heat::Heat;
-use super::leaf::{Coefficient, Dashpot, Free, Jenkins, Leaf, Source, Spring, Springpot, When};
+use super::leaf::{Clock, Coefficient, Dashpot, Free, Jenkins, Leaf, Source, Spring, Springpot, When};
 use super::past::Recalled;
 use super::rule::RuleError;
 use super::state::{State, StateRef, StateSize};
-use super::step::{
-    Electric, InputValue, LeafState, LocalError, Observation, Point, Powers, Response, Start, Step, Term,
-};
+use super::step::{InputValue, LeafState, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
 use super::tangent::AtRest;
+use super::told::Told;
 use super::variation::{LawVariation, ObservationVariation, PointVariation, PowersVariation, StepVariation};
 use crate::collocation::MAX_NODES;
 use crate::dual::Dual;
@@ -466,22 +465,47 @@ impl Network {
         self.ask().now(at, &mut state.seen_at(at.t).view(), &mut |leaf| leaves.push(leaf.state()));
     }
 
-    /// The electrical side of the law, which is that of its first leaf that has one: as of `when`. Pure.
-    pub fn electric(&self, when: When, at: &Point, state: &State) -> Option<Electric> {
-        let mut found = None;
-        let mut take = |leaf: part::Seen| {
-            if found.is_none() {
-                let electric = leaf.leaf.electric(leaf.when, &leaf.at, leaf.state);
-                found = electric.map(|own| Electric { current: own.current / leaf.factor, ..own });
+    /// What it tells of itself beside stroke, force and energies: of each of its leaves what none before it tells, and temperature and heat where it
+    /// keeps a temperature.
+    pub fn tells(&self) -> Vec<Told> {
+        let mut told: Vec<Told> = Vec::new();
+        let mut add = |own: &[Told]| {
+            for quantity in own {
+                if told.iter().all(|other| other.key != quantity.key) {
+                    told.push(*quantity);
+                }
             }
         };
-        if self.is_electric() {
+        self.ask().for_each_leaf(&mut |leaf| add(leaf.tells()));
+        if self.is_thermal() {
+            add(&[Told::TEMPERATURE, Told::HEAT]);
+        }
+        told
+    }
+
+    /// Appends the values of [`Self::tells`], in that order, as of `when`. Pure.
+    pub fn tell(&self, when: When, at: &Point, state: &State, values: &mut Vec<f64>) {
+        let mut told: Vec<&str> = Vec::new();
+        let mut take = |seen: part::Seen| {
+            let mut own = seen.leaf.tells().iter();
+            seen.leaf.tell(seen.when, &seen.at, seen.state, &mut |value| {
+                if let Some(quantity) = own.next().filter(|quantity| !told.contains(&quantity.key)) {
+                    told.push(quantity.key);
+                    values.push(value);
+                }
+            });
+        };
+        if self.any_leaf(|leaf| !leaf.tells().is_empty()) {
             match when {
                 When::Within(step, theta) => self.ask().at(step, theta, at, &mut state.view(), &mut take),
                 When::Between => self.ask().now(at, &mut state.view(), &mut take),
             };
         }
-        found
+        let within = match when {
+            When::Within(step, theta) => Some((step, theta)),
+            When::Between => None,
+        };
+        values.extend(self.warmth(within, state).into_iter().flat_map(|warmth| [warmth.temperature, warmth.lost]));
     }
 
     fn any_leaf(&self, is_one: impl Fn(&LeafPart) -> bool) -> bool {
@@ -490,14 +514,9 @@ impl Network {
         found
     }
 
-    /// Whether something in it goes on by itself with time ([`Leaf::has_clock`]).
+    /// Whether a leaf of it keeps a clock of its own.
     pub(super) fn has_clock(&self) -> bool {
-        self.any_leaf(|leaf| leaf.has_clock())
-    }
-
-    /// Whether it has an electrical side to tell.
-    pub fn is_electric(&self) -> bool {
-        self.any_leaf(|leaf| leaf.is_electric())
+        self.any_leaf(|leaf| leaf.clock() == Clock::Own)
     }
 
     /// |∂F/∂x| of small strokes about `at` at the rate `omega`, rad/s, without any memory: k + c·ω + Σ c·ω^alpha of parallel parts.
@@ -587,7 +606,7 @@ impl Network {
 
     /// F/x under e^{st} of a linear law, N/m: k + c·s + Σ c·s^alpha of parallel parts.
     pub fn modulus(&self, at: &Point, s: Complex64) -> Complex64 {
-        self.ask().modulus(at, s)
+        self.at_rest(at, at.stroke).map_or(Complex64::new(f64::NAN, f64::NAN), |rest| rest.tangent.modulus(s))
     }
 
     /// K' and K'' of K* = [`Self::modulus`] under e^{iωt}, N/m: what is stored, and what is lost.

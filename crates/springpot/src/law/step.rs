@@ -133,17 +133,6 @@ pub struct LeafState {
     pub derivative: f64,
 }
 
-/// The electrical side of a law at one time.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Electric {
-    /// Voltage across its terminals, V.
-    pub voltage: f64,
-    /// Charge on them, C.
-    pub charge: f64,
-    /// Current into them, A.
-    pub current: f64,
-}
-
 /// c·D^order x: what a law is like under small and fast strokes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Term {
@@ -236,6 +225,11 @@ impl Observation {
 }
 
 impl Term {
+    /// c·D^order in ξ as it is in t, where times are longer by a_T = `factor`.
+    pub(super) fn shifted(self, factor: f64) -> Self {
+        Self { coefficient: self.coefficient * factor.powf(self.order), ..self }
+    }
+
     /// |∂F/∂x| of strokes at the rate `omega`, rad/s.
     pub fn stiffness(&self, omega: f64) -> f64 {
         self.coefficient * omega.powf(self.order)

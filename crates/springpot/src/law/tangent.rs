@@ -9,27 +9,12 @@ use std::f64::consts::PI;
 /// Rounds in which parts in series come to one force.
 const MOST_ROUNDS: usize = 200;
 
-/// A leaf that has been at rest since ever.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LeafAtRest {
-    /// F that remains, N.
-    pub force: f64,
-    /// Its slope dF/dx, N/m; `None` where the leaf flows: what remains of F does not depend on the stroke.
-    pub stiffness: Option<f64>,
-    /// c·s^order, what small motions e^{st} meet; the coefficient has any sign.
-    pub term: Term,
-    /// An input and ∂F of it.
-    pub input: Option<(usize, f64)>,
-    /// What small motions meet beside the term: d·s, N·s/m.
-    pub damping: f64,
-}
-
-/// A law that has been at rest since ever ([`Network::at_rest`]).
+/// A law, or a leaf, that has been at rest since ever ([`Network::at_rest`]).
 #[derive(Debug, Clone, PartialEq)]
 pub struct AtRest {
     /// F that remains, N.
     pub force: f64,
-    /// Its slope dF/dx, N/m; `None` where the law flows: what remains of F does not depend on the stroke.
+    /// Its slope dF/dx, N/m; `None` where it flows: what remains of F does not depend on the stroke.
     pub stiffness: Option<f64>,
     /// How it answers to small motions.
     pub tangent: Tangent,
@@ -114,6 +99,30 @@ pub(super) fn series(parts: &[Network], at: &Point) -> Option<AtRest> {
 }
 
 impl Tangent {
+    /// A leaf that is a spring of the stiffness k, N/m.
+    pub(super) fn spring(k: f64) -> Self {
+        Self::Leaf(Term { coefficient: k, order: 0.0 }, None)
+    }
+
+    /// A leaf that is a dashpot of the coefficient c, N·s/m.
+    pub(super) fn dashpot(c: f64) -> Self {
+        Self::Leaf(Term { coefficient: c, order: 1.0 }, None)
+    }
+
+    /// The same with times longer by a_T = `factor`, its inputs under the numbers that `outside` gives them.
+    pub(super) fn shifted(self, factor: f64, outside: &dyn Fn(usize) -> Option<usize>) -> Self {
+        let all = |parts: Vec<Self>| parts.into_iter().map(|part| part.shifted(factor, outside)).collect();
+        match self {
+            Self::Leaf(term, input) => {
+                let input = input.and_then(|(input, gain)| Some((outside(input)?, gain)));
+                Self::Leaf(term.shifted(factor), input)
+            }
+            Self::Whole(tangent) => Self::Whole(Box::new(tangent.shifted(factor, outside))),
+            Self::Parallel(parts) => Self::Parallel(all(parts)),
+            Self::Series(parts) => Self::Series(all(parts)),
+        }
+    }
+
     /// K(s), N/m; of s^order the principal branch.
     pub fn modulus(&self, s: Complex64) -> Complex64 {
         match self {

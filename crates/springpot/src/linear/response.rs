@@ -22,6 +22,9 @@ pub enum NoResponse {
     /// It is a quadratic function of small motions.
     #[error("energies are not linear in small motions")]
     Energy,
+    /// A law tells it beside stroke, rate and force, as a voltage.
+    #[error("the responses of an element are those of its stroke, its force and its leaves")]
+    Told,
     /// It is a distance, or the time.
     #[error("it is not linear in small motions")]
     NotLinear,
@@ -144,12 +147,10 @@ impl Linearisation {
                             LeafQuantity::Derivative => leaf.derivative,
                         }
                     }
-                    ElementQuantity::Electric(_)
+                    ElementQuantity::Told(_)
                     | ElementQuantity::Stored
                     | ElementQuantity::Dissipated
-                    | ElementQuantity::Input
-                    | ElementQuantity::Temperature
-                    | ElementQuantity::Heat => return None,
+                    | ElementQuantity::Input => return None,
                 })
             }
             Quantity::Time | Quantity::GripperError | Quantity::Energy(_) | Quantity::Derivative(_) => None,
@@ -169,14 +170,10 @@ impl LinearElement {
 fn check(of: Quantity) -> Result<(), NoResponse> {
     match of {
         Quantity::Energy(_)
-        | Quantity::Element(
-            _,
-            ElementQuantity::Stored
-            | ElementQuantity::Dissipated
-            | ElementQuantity::Input
-            | ElementQuantity::Temperature
-            | ElementQuantity::Heat,
-        ) => Err(NoResponse::Energy),
+        | Quantity::Element(_, ElementQuantity::Stored | ElementQuantity::Dissipated | ElementQuantity::Input) => {
+            Err(NoResponse::Energy)
+        }
+        Quantity::Element(_, ElementQuantity::Told(_)) => Err(NoResponse::Told),
         Quantity::Time | Quantity::GripperError | Quantity::Derivative(_) => Err(NoResponse::NotLinear),
         _ => Ok(()),
     }

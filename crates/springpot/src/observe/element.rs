@@ -4,7 +4,7 @@ use super::evaluation::{ElementEvaluation, ElementRow};
 use super::subscript::at_joint;
 use super::units::ObservedElement;
 use crate::elements::MeasureKind;
-use crate::law::{Electric, LeafState};
+use crate::law::{LeafState, Told};
 use crate::model::Label;
 use std::fmt;
 
@@ -30,65 +30,13 @@ pub enum ElementQuantity<Id = usize> {
     Dissipated,
     /// Energy supplied by the inputs since t = 0, J.
     Input,
-    /// Something of the electrical side of its law, where it has one.
-    Electric(ElectricQuantity),
-    /// T of an element that warms itself, K.
-    Temperature,
-    /// Heat lost to the surroundings since t = 0, J, of such an element.
-    Heat,
+    /// What its law tells of itself beside that ([`Told`]), in its order: of a circuit voltage, charge and current, of what warms itself its temperature and
+    /// the heat that it lost.
+    Told(Id),
     /// Value of an input, in the order of its law.
     InputValue(Id),
     /// Something of a leaf of its law.
     Leaf(Id, LeafQuantity),
-}
-
-/// A number of the electrical side of an element.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum ElectricQuantity {
-    /// Voltage across its terminals, V.
-    Voltage,
-    /// Charge on them, C.
-    Charge,
-    /// Current into them, A.
-    Current,
-}
-
-impl ElectricQuantity {
-    /// All of them, in the order of the columns.
-    pub const ALL: [Self; 3] = [Self::Voltage, Self::Charge, Self::Current];
-
-    /// What follows the element's name in the column.
-    pub const fn key(self) -> &'static str {
-        match self {
-            Self::Voltage => "voltage",
-            Self::Charge => "charge",
-            Self::Current => "current",
-        }
-    }
-
-    const fn unit(self) -> &'static str {
-        match self {
-            Self::Voltage => "V",
-            Self::Charge => "C",
-            Self::Current => "A",
-        }
-    }
-
-    fn meaning(self, element: &str) -> String {
-        match self {
-            Self::Voltage => format!("voltage across {element}"),
-            Self::Charge => format!("charge on {element}"),
-            Self::Current => format!("current into {element}"),
-        }
-    }
-
-    fn value(self, electric: &Electric) -> f64 {
-        match self {
-            Self::Voltage => electric.voltage,
-            Self::Charge => electric.charge,
-            Self::Current => electric.current,
-        }
-    }
 }
 
 /// A number of a leaf.
@@ -143,14 +91,12 @@ impl<Id> ElementQuantity<Id> {
     pub(super) const BEFORE_FORCES: [Self; 5] = [Self::Length, Self::Stroke, Self::Rate, Self::Derivative, Self::Force];
     /// Those that come between the generalized forces and the inputs.
     pub(super) const BEFORE_INPUTS: [Self; 3] = [Self::Stored, Self::Dissipated, Self::Input];
-    /// Those that follow where the element warms itself.
-    pub(super) const OF_HEAT: [Self; 2] = [Self::Temperature, Self::Heat];
 }
 
 impl ElementQuantity {
     /// Its value in a row, NaN where unknown.
     pub(super) fn value(self, row: &ElementRow, state: &ElementEvaluation) -> f64 {
-        let ElementRow { observation, electric, leaves, dissipated, input, warmth } = row;
+        let ElementRow { observation, told, leaves, dissipated, input } = row;
         match self {
             Self::Length => state.reading.coordinate,
             Self::Stroke => state.stroke,
@@ -161,9 +107,7 @@ impl ElementQuantity {
             Self::Stored => observation.stored.unwrap_or(f64::NAN),
             Self::Dissipated => observation.stored.map_or(f64::NAN, |_| *dissipated),
             Self::Input => *input,
-            Self::Electric(quantity) => electric.as_ref().map_or(f64::NAN, |electric| quantity.value(electric)),
-            Self::Temperature => warmth.map_or(f64::NAN, |warmth| warmth.temperature),
-            Self::Heat => warmth.map_or(f64::NAN, |warmth| warmth.lost),
+            Self::Told(i) => told.get(i).copied().unwrap_or(f64::NAN),
             Self::InputValue(i) => state.inputs.get(i).map_or(f64::NAN, |input| input.value),
             Self::Leaf(i, quantity) => leaves.get(i).map_or(f64::NAN, |leaf| quantity.value(leaf)),
         }
@@ -182,9 +126,8 @@ impl ElementQuantity {
             Self::Derivative => element.derivative_unit,
             Self::Force | Self::Leaf(_, LeafQuantity::Force) => of_element(["N*m", "N"]),
             Self::GeneralizedForce(k) => velocities[k].dimension.units().force,
-            Self::Stored | Self::Dissipated | Self::Input | Self::Heat => "J",
-            Self::Temperature => "K",
-            Self::Electric(quantity) => quantity.unit(),
+            Self::Stored | Self::Dissipated | Self::Input => "J",
+            Self::Told(i) => element.tells[i].unit,
             Self::InputValue(i) => &element.entry.inputs[i].unit,
         }
     }
@@ -201,9 +144,7 @@ impl ElementQuantity {
             Self::Stored => ElementQuantity::Stored,
             Self::Dissipated => ElementQuantity::Dissipated,
             Self::Input => ElementQuantity::Input,
-            Self::Electric(quantity) => ElementQuantity::Electric(quantity),
-            Self::Temperature => ElementQuantity::Temperature,
-            Self::Heat => ElementQuantity::Heat,
+            Self::Told(i) => ElementQuantity::Told(element.tells[i].key),
             Self::InputValue(i) => ElementQuantity::InputValue(&element.entry.inputs[i].name),
             Self::Leaf(i, quantity) => ElementQuantity::Leaf(&element.leaves[i].0, quantity),
         }
@@ -220,11 +161,8 @@ impl<'a> ElementQuantity<&'a str> {
                 .find(|quantity| quantity.key() == key)
                 .map(|quantity| Self::Leaf(leaf, quantity)),
             None => {
-                let mut known = Self::BEFORE_FORCES
-                    .into_iter()
-                    .chain(Self::BEFORE_INPUTS)
-                    .chain(ElectricQuantity::ALL.map(Self::Electric))
-                    .chain([Self::Heat]);
+                let told = Told::BY_NAME.map(|told| Self::Told(told.key));
+                let mut known = Self::BEFORE_FORCES.into_iter().chain(Self::BEFORE_INPUTS).chain(told);
                 Some(known.find(|quantity| quantity.to_string() == key).unwrap_or(Self::InputValue(key)))
             }
         }
@@ -242,9 +180,7 @@ impl<'a> ElementQuantity<&'a str> {
             Self::Stored => format!("energy stored in {element}"),
             Self::Dissipated => format!("energy dissipated in {element} since t = 0"),
             Self::Input => format!("energy supplied by the inputs of {element} since t = 0"),
-            Self::Electric(quantity) => quantity.meaning(element),
-            Self::Temperature => format!("temperature of {element}"),
-            Self::Heat => format!("heat lost by {element} to its surroundings since t = 0"),
+            Self::Told(key) => told(key).map_or_else(|| format!("{key} of {element}"), |told| told.meaning_of(element)),
             Self::InputValue(input) => format!("{input} of {element}"),
             Self::Leaf(leaf, quantity) => format!("{} of {leaf} in {element}", quantity.words()),
         }
@@ -278,9 +214,7 @@ impl<'a> ElementQuantity<&'a str> {
             Self::Stored => format!("energy stored in {element}"),
             Self::Dissipated => format!("energy dissipated in {element}"),
             Self::Input => format!("energy supplied to {element}"),
-            Self::Electric(quantity) => quantity.meaning(element),
-            Self::Temperature => format!("T of {element}"),
-            Self::Heat => format!("heat lost by {element}"),
+            Self::Told(key) => told(key).map_or_else(|| format!("{key} of {element}"), |told| told.symbol_of(element)),
             Self::InputValue(input) => format!("{input} of {element}"),
             Self::Leaf(leaf, LeafQuantity::Stroke) => format!("stroke x of {leaf} in {element}"),
             Self::Leaf(leaf, LeafQuantity::Rate) => format!("stroke rate of {leaf} in {element}"),
@@ -303,11 +237,13 @@ impl fmt::Display for ElementQuantity<&str> {
             Self::Stored => "stored",
             Self::Dissipated => "dissipated",
             Self::Input => "input",
-            Self::Electric(quantity) => quantity.key(),
-            Self::Temperature => "T",
-            Self::Heat => "heat",
-            Self::InputValue(input) => input,
+            Self::Told(key) | Self::InputValue(key) => key,
             Self::Leaf(leaf, quantity) => return write!(f, "{leaf}.{}", quantity.key()),
         })
     }
+}
+
+/// What laws tell under this key, of those that a name tells.
+fn told(key: &str) -> Option<Told> {
+    Told::BY_NAME.into_iter().find(|told| told.key == key)
 }

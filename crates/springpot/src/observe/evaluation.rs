@@ -1,7 +1,7 @@
 //! Robot and elements evaluated at one time.
 
 use crate::elements::Reading;
-use crate::law::{Electric, InputValue, LeafState, Observation, Warmth};
+use crate::law::{InputValue, LeafState, Observation};
 use serde::{Deserialize, Serialize};
 
 /// State of one element at one time, before its law is asked.
@@ -40,26 +40,23 @@ pub(crate) struct Evaluation {
 #[derive(Debug, Clone)]
 pub(crate) struct ElementRow {
     pub(crate) observation: Observation,
-    /// Its electrical side, where it has one.
-    pub(crate) electric: Option<Electric>,
+    /// What its law tells of itself, as many as [`crate::law::Network::tells`] has; nothing where it takes no part.
+    pub(crate) told: Vec<f64>,
     /// Its leaves, where rows tell them.
     pub(crate) leaves: Vec<LeafState>,
     /// Dissipated and supplied since t = 0, J; NaN where unknown.
     pub(crate) dissipated: f64,
     pub(crate) input: f64,
-    /// Its temperature and the heat lost, where it keeps a temperature.
-    pub(crate) warmth: Option<Warmth>,
 }
 
 impl ElementRow {
     /// Before its law was asked.
     pub(crate) const UNKNOWN: Self = Self {
         observation: Observation { derivative: f64::NAN, regular: f64::NAN, singular: 0.0, stored: None },
-        electric: None,
+        told: Vec::new(),
         leaves: Vec::new(),
         dissipated: f64::NAN,
         input: f64::NAN,
-        warmth: None,
     };
 
     /// Q_b = −F·∂y/∂q_b.

@@ -13,7 +13,7 @@ pub mod symbol;
 mod table;
 mod units;
 
-pub use element::{ElectricQuantity, ElementQuantity, LeafQuantity};
+pub use element::{ElementQuantity, LeafQuantity};
 pub use observables::Observables;
 pub(crate) use quantity::Needs;
 pub use quantity::{Axis, EnergyQuantity, Quantity};

@@ -1,6 +1,6 @@
 //! What can be observed of a system, in the order of its rows.
 
-use super::element::{ElectricQuantity, ElementQuantity, LeafQuantity};
+use super::element::{ElementQuantity, LeafQuantity};
 use super::quantity::{Axis, EnergyQuantity, Quantity};
 use super::units::ObservedElement;
 use crate::elements::Element;
@@ -34,10 +34,8 @@ struct ElementShape {
     pub(crate) leaves: usize,
     /// Whether its law has one derivative to tell.
     pub(crate) derivative: bool,
-    /// Whether its law has an electrical side.
-    pub(crate) electric: bool,
-    /// Whether it warms itself.
-    pub(crate) thermal: bool,
+    /// How many numbers its law tells of itself.
+    pub(crate) told: usize,
 }
 
 impl Shape {
@@ -50,24 +48,17 @@ impl Shape {
         (0..nv).map(Quantity::Acceleration).for_each(&mut *visit);
         (0..nv).map(Quantity::Torque).for_each(&mut *visit);
         let shown = elements.into_iter().enumerate().filter(|(_, element)| element.shown);
-        for (e, ElementShape { inputs, leaves, derivative, electric, thermal, .. }) in shown {
-            let told = |quantity: &ElementQuantity| *quantity != ElementQuantity::Derivative || derivative;
-            let before = ElementQuantity::BEFORE_FORCES.into_iter().filter(told);
-            let electric = if electric { &ElectricQuantity::ALL[..] } else { &[] };
-            let electric = electric.iter().map(|quantity| ElementQuantity::Electric(*quantity));
+        for (e, ElementShape { inputs, leaves, derivative, told, .. }) in shown {
+            let known = |quantity: &ElementQuantity| *quantity != ElementQuantity::Derivative || derivative;
+            let before = ElementQuantity::BEFORE_FORCES.into_iter().filter(known);
             let forces = (0..nv).map(ElementQuantity::GeneralizedForce);
-            let heat = ElementQuantity::OF_HEAT.into_iter().filter(|_| thermal);
+            let told = (0..told).map(ElementQuantity::Told);
             let inputs = (0..inputs).map(ElementQuantity::InputValue);
             let leaves = 0..if tells_leaves { leaves } else { 0 };
             let leaves =
                 leaves.flat_map(|leaf| LeafQuantity::ALL.map(|quantity| ElementQuantity::Leaf(leaf, quantity)));
-            let all = before
-                .chain(forces)
-                .chain(ElementQuantity::BEFORE_INPUTS)
-                .chain(electric)
-                .chain(heat)
-                .chain(inputs)
-                .chain(leaves);
+            let all =
+                before.chain(forces).chain(ElementQuantity::BEFORE_INPUTS).chain(told).chain(inputs).chain(leaves);
             all.map(|quantity| Quantity::Element(e, quantity)).for_each(&mut *visit);
         }
         if gripper {
@@ -102,8 +93,7 @@ impl Observables {
             is_rotation: element.measure.is_rotation(),
             derivative_unit: derivative_unit(element),
             tells_derivative: element.law.tells_derivative(),
-            is_electric: element.law.is_electric(),
-            is_thermal: element.law.is_thermal(),
+            tells: element.law.tells(),
             leaves: element.law.leaf_names().into_iter().zip(leaf_units(element)).collect(),
             entry: element.entry.clone(),
         };
@@ -166,8 +156,7 @@ impl Observables {
             inputs: element.entry.inputs.len(),
             leaves: element.leaves.len(),
             derivative: element.tells_derivative,
-            electric: element.is_electric,
-            thermal: element.is_thermal,
+            told: element.tells.len(),
         })
     }
 
@@ -189,6 +178,9 @@ impl Observables {
             Quantity::Element(e, ElementQuantity::InputValue(i)) => {
                 let words = &self.elements[e].entry.inputs[i].meaning;
                 Quantity::Element(&*self.elements[e].name, ElementQuantity::InputValue(&**words)).meaning()
+            }
+            Quantity::Element(e, ElementQuantity::Told(i)) => {
+                self.elements[e].tells[i].meaning_of(&self.elements[e].name)
             }
             Quantity::Element(e, quantity) => {
                 let element = &self.elements[e];

@@ -1,7 +1,7 @@
 //! What names and units of quantities follow from.
 
 use crate::elements::MeasureKind;
-use crate::law::Entry;
+use crate::law::{Entry, Told};
 use std::sync::Arc;
 
 /// What names and units of an element's quantities follow from.
@@ -14,10 +14,8 @@ pub(super) struct ObservedElement {
     pub(super) derivative_unit: &'static str,
     /// Whether its law has one derivative to tell.
     pub(super) tells_derivative: bool,
-    /// Whether its law has an electrical side.
-    pub(super) is_electric: bool,
-    /// Whether it warms itself.
-    pub(super) is_thermal: bool,
+    /// What its law tells of itself.
+    pub(super) tells: Vec<Told>,
     /// Names of its leaves, and units of their derivatives.
     pub(super) leaves: Vec<(String, &'static str)>,
     pub(super) entry: Arc<Entry>,

@@ -20,7 +20,7 @@ fn every_column_reads_back_as_its_quantity() {
         for (k, (column, quantity)) in system.columns().iter().zip(quantities).enumerate() {
             // A name does not tell whether a temperature is told or a state.
             let read = match observables.named(quantity) {
-                Quantity::Element(e, ElementQuantity::Temperature) => {
+                Quantity::Element(e, ElementQuantity::Told("T")) => {
                     Quantity::Element(e, ElementQuantity::InputValue("T"))
                 }
                 named => named,

@@ -122,7 +122,7 @@ fn find_column(asked: &Asked, name: &str) -> Result<Named<Quantity>, Problem> {
     let quantity = observables.quantities()[k];
     match answers(quantity) {
         Ok(_) => Ok(Named { name: name.to_owned(), unit: columns[k].unit.clone(), what: quantity }),
-        Err(why @ (NoResponse::Energy | NoResponse::NotLinear | NoResponse::None)) => {
+        Err(why @ (NoResponse::Energy | NoResponse::Told | NoResponse::NotLinear | NoResponse::None)) => {
             let help = "take a coordinate, a velocity, a torque, something of an element or the gripper".to_owned();
             Err((format!("--frequency-response {name}: {why}"), help))
         }

@@ -306,9 +306,9 @@ impl Recorder {
             if cx.system.needs_leaves() {
                 self.equations.bank.leaves(e, theta, &point, &mut leaves);
             }
-            let electric = self.equations.bank.electric(e, theta, &point);
-            let warmth = self.equations.bank.warmth(e, theta);
-            elements.push(ElementRow { observation, electric, leaves, dissipated, input, warmth });
+            let mut told = Vec::new();
+            self.equations.bank.tell(e, theta, &point, &mut told);
+            elements.push(ElementRow { observation, told, leaves, dissipated, input });
         }
         let (actuators, joints) = theta.map_or((0.0, 0.0), |theta| self.work_until(theta));
         let balance = self.balance(snapshot, actuators, joints);

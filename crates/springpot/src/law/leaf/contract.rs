@@ -8,8 +8,9 @@ use crate::fractional::{KernelError, MemoryTangent};
 use crate::law::network::{Guard, Holds};
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
-use crate::law::step::{Electric, InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
-use crate::law::tangent::{LeafAtRest, Tangent};
+use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
+use crate::law::tangent::{AtRest, Tangent};
+use crate::law::told::Told;
 use crate::law::variation::{
     ObservationVariation, PointVariation, PowersVariation, StepVariation, VariationMut, VariationRef,
 };
@@ -22,6 +23,17 @@ pub enum When<'a> {
     Within(&'a Step<'a>, f64),
     /// Between two steps.
     Between,
+}
+
+/// Whose clock a leaf goes by, where temperature shifts the law that it is in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Clock {
+    /// That of the material, which temperature shifts, as springpots and dashpots do; also of what follows no rate.
+    Material,
+    /// That of the wall: it follows its rate, and no temperature shifts it.
+    Wall,
+    /// Its own: something in it goes on by itself with time, such as the driver of a coil. No temperature shifts a law with that.
+    Own,
 }
 
 /// A spring that is free at some strokes: F = k·(x − upper) above `upper`, k·(x − lower) below `lower`, 0 between them.
@@ -106,15 +118,13 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
     /// The leaf between two steps, under the kinematics and inputs of `at`, which may have jumped since the last one.
     fn now(&self, at: &Point, state: StateRef) -> Observation;
 
-    /// Its electrical side, where [`Leaf::is_electric`].
-    fn electric(&self, _when: When, _at: &Point, _state: StateRef) -> Option<Electric> {
-        None
+    /// What it tells of itself beside stroke, force and energies, in the order of the columns.
+    fn tells(&self) -> &'static [Told] {
+        &[]
     }
 
-    /// Whether it has an electrical side.
-    fn is_electric(&self) -> bool {
-        false
-    }
+    /// Hands over the values of [`Leaf::tells`], in that order.
+    fn tell(&self, _when: When, _at: &Point, _state: StateRef, _take: &mut dyn FnMut(f64)) {}
 
     /// What it is like under small and fast strokes about `at`.
     fn linearised(&self, at: &Point) -> Term;
@@ -135,20 +145,9 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
     /// The leaf at rest since ever at the stroke of `at`; `held` is x(0), from which Caputo's derivative counts.
     ///
     /// What is provided is that of a leaf that flows: no force remains, and small motions meet [`Leaf::linearised`].
-    fn at_rest(&self, at: &Point, _held: f64) -> LeafAtRest {
-        LeafAtRest {
-            force: 0.0,
-            stiffness: None,
-            term: self.linearised(&Point { rate: 0.0, ..*at }),
-            input: None,
-            damping: 0.0,
-        }
-    }
-
-    /// How it answers to small motions about rest where one term, an input and a dashpot do not say it: then [`Leaf::at_rest`] tells force
-    /// and slope alone.
-    fn tangent(&self, _at: &Point) -> Option<Tangent> {
-        None
+    fn at_rest(&self, at: &Point, _held: f64) -> AtRest {
+        let term = self.linearised(&Point { rate: 0.0, ..*at });
+        AtRest { force: 0.0, stiffness: None, tangent: Tangent::Leaf(term, None) }
     }
 
     /// Whether it gives a force that grows with its stroke, or the rate of it, wherever it is: what may stand in a series by itself.
@@ -195,14 +194,9 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
         }
     }
 
-    /// Temperature shifts springpots and dashpots; whether it is something else that follows its rate, by the clock of the wall.
-    fn keeps_the_wall_clock(&self) -> bool {
-        false
-    }
-
-    /// Whether something in it goes on by itself with time, such as the driver of a coil: no temperature shifts a law with that.
-    fn has_clock(&self) -> bool {
-        false
+    /// Whose clock it goes by.
+    fn clock(&self) -> Clock {
+        Clock::Material
     }
 
     /// F is an affine function of strokes and rates of a step.

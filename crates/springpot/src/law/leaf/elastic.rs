@@ -5,7 +5,7 @@ use crate::dual::Dual;
 use crate::law::network::Holds;
 use crate::law::state::StateRef;
 use crate::law::step::{Observation, Point, Response, Step, Term};
-use crate::law::tangent::LeafAtRest;
+use crate::law::tangent::{AtRest, Tangent};
 use crate::law::variation::{ObservationVariation, PointVariation, StepVariation, VariationRef, add};
 
 /// F(x), linear or not: a leaf that keeps nothing and loses nothing.
@@ -103,11 +103,10 @@ impl<T: Elastic> Leaf for T {
         known.then_some(Term { coefficient, order: 0.0 })
     }
 
-    fn at_rest(&self, at: &Point, _: f64) -> LeafAtRest {
+    fn at_rest(&self, at: &Point, _: f64) -> AtRest {
         let slope = self.slope(at.stroke);
         let stiffness = (Elastic::holds(self) != Holds::Never).then_some(slope);
-        let term = Term { coefficient: slope, order: 0.0 };
-        LeafAtRest { force: self.force(at.stroke), stiffness, term, input: None, damping: 0.0 }
+        AtRest { force: self.force(at.stroke), stiffness, tangent: Tangent::spring(slope) }
     }
 
     fn holds(&self) -> Holds {

@@ -1,13 +1,13 @@
 //! The ends of a joint as stops.
 
 use super::columns::{ByColumns, Columns};
-use super::contract::Leaf;
+use super::contract::{Clock, Leaf};
 use crate::dual::{Dual, Real};
 use crate::law::network::Holds;
 use crate::law::rule::RuleError;
 use crate::law::state::StateRef;
 use crate::law::step::{Observation, Point, Power, Powers, Response, Step, Term};
-use crate::law::tangent::LeafAtRest;
+use crate::law::tangent::{AtRest, Tangent};
 
 /// F = max(k·e + d·x', 0) where x is e ≥ 0 above `upper`, F = min(k·e + d·x', 0) where it is e ≤ 0 below `lower`, 0 between them: it pushes back and
 /// never pulls. Stores ½k·e²; what it does not give back is dissipated.
@@ -103,14 +103,18 @@ impl Leaf for EndStop {
         Term { coefficient: self.response(at.stroke, at.rate).1, order: 0.0 }
     }
 
-    fn at_rest(&self, at: &Point, _: f64) -> LeafAtRest {
+    fn at_rest(&self, at: &Point, _: f64) -> AtRest {
         let (force, slope, damping) = self.response(at.stroke, 0.0);
-        let term = Term { coefficient: slope, order: 0.0 };
-        LeafAtRest { force, stiffness: Some(slope), term, input: None, damping }
+        let spring = Tangent::spring(slope);
+        let tangent = match damping {
+            0.0 => spring,
+            _ => Tangent::Whole(Box::new(Tangent::Parallel(vec![spring, Tangent::dashpot(damping)]))),
+        };
+        AtRest { force, stiffness: Some(slope), tangent }
     }
 
-    fn keeps_the_wall_clock(&self) -> bool {
-        true
+    fn clock(&self) -> Clock {
+        Clock::Wall
     }
 
     fn holds(&self) -> Holds {

@@ -1,7 +1,7 @@
 //! Smooth friction.
 
 use super::columns::{ByColumns, Columns};
-use super::contract::{Leaf, Slide};
+use super::contract::{Clock, Leaf, Slide};
 use super::kind::{LeafBuild, LeafKind};
 use super::springpot::Coefficient;
 use crate::collocation::MAX_NODES;
@@ -81,8 +81,8 @@ impl Leaf for Friction {
         Term { coefficient: self.slope(at), order: 1.0 }
     }
 
-    fn keeps_the_wall_clock(&self) -> bool {
-        true
+    fn clock(&self) -> Clock {
+        Clock::Wall
     }
 
     fn holds(&self) -> Holds {

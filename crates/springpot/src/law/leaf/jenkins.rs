@@ -11,7 +11,7 @@ use crate::law::network::{Guard, Holds, Network};
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{Observation, Point, Power, Powers, Response, Start, Step, Term};
-use crate::law::tangent::LeafAtRest;
+use crate::law::tangent::{AtRest, Tangent};
 use num_complex::Complex64;
 use std::cmp::Ordering;
 use std::f64::consts::PI;
@@ -188,16 +188,11 @@ impl Leaf for Jenkins {
     }
 
     /// As it is where the stroke came from 0 on one way; small motions do not make it slip.
-    fn at_rest(&self, at: &Point, _: f64) -> LeafAtRest {
+    fn at_rest(&self, at: &Point, _: f64) -> AtRest {
         let slipped = self.slipped(0.0, at.stroke);
         let slope = if slipped == 0.0 { self.stiffness.value } else { 0.0 };
-        LeafAtRest {
-            force: self.force(0.0, at.stroke),
-            stiffness: Some(slope),
-            term: self.linearised(at),
-            input: None,
-            damping: 0.0,
-        }
+        let tangent = Tangent::Leaf(self.linearised(at), None);
+        AtRest { force: self.force(0.0, at.stroke), stiffness: Some(slope), tangent }
     }
 
     /// As many as [`Leaf::guards_in`] has.

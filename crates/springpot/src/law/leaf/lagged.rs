@@ -1,6 +1,6 @@
 //! A leaf behind its driver, whose output follows the command with a lag.
 
-use super::contract::{Leaf, When};
+use super::contract::{Clock, Leaf, When};
 use super::hysteresis::{Matrix, Values, resolvent};
 use crate::collocation::{MAX_NODES, Nodes, quadrature, quadrature_defect};
 use crate::dual::Dual;
@@ -9,7 +9,7 @@ use crate::law::network::{Guard, Holds};
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
-use crate::law::tangent::{LeafAtRest, Tangent};
+use crate::law::tangent::AtRest;
 use crate::law::variation::{
     AtNodes, ObservationVariation, PointVariation, PowersVariation, StepVariation, VariationMut, VariationRef,
 };
@@ -343,16 +343,12 @@ impl<L: Leaf> Leaf for Lagged<L> {
         self.leaf.linearised(&Point { inputs: &Self::settled(at), ..*at })
     }
 
-    fn at_rest(&self, at: &Point, held: f64) -> LeafAtRest {
+    fn at_rest(&self, at: &Point, held: f64) -> AtRest {
         self.leaf.at_rest(&Point { inputs: &Self::settled(at), ..*at }, held)
     }
 
-    fn tangent(&self, at: &Point) -> Option<Tangent> {
-        self.leaf.tangent(&Point { inputs: &Self::settled(at), ..*at })
-    }
-
-    fn has_clock(&self) -> bool {
-        true
+    fn clock(&self) -> Clock {
+        Clock::Own
     }
 
     fn holds(&self) -> Holds {

@@ -25,7 +25,7 @@ mod viscous;
 
 pub use bouc_wen::BoucWen;
 pub use columns::{ByColumns, Columns};
-pub use contract::{Free, Leaf, Slide, When};
+pub use contract::{Clock, Free, Leaf, Slide, When};
 pub use dashpot::Dashpot;
 pub use elastic::Elastic;
 pub use end_stop::EndStop;

@@ -5,7 +5,7 @@ use crate::collocation::MAX_NODES;
 use crate::dual::Dual;
 use crate::law::state::StateRef;
 use crate::law::step::{Observation, Point, Powers, Response, Step, Term};
-use crate::law::tangent::LeafAtRest;
+use crate::law::tangent::{AtRest, Tangent};
 use crate::law::variation::{ObservationVariation, PointVariation, PowersVariation, StepVariation, VariationRef, add};
 
 /// F = −gain·(input − reference): expansion by heat or voltage, turned into force by a stiffness.
@@ -110,9 +110,9 @@ impl Leaf for Source {
         Term { coefficient: 0.0, order: 0.0 }
     }
 
-    fn at_rest(&self, at: &Point, _: f64) -> LeafAtRest {
-        let input = Some((self.input, -self.gain.value));
-        LeafAtRest { force: self.force(at), stiffness: None, term: self.linearised(at), input, damping: 0.0 }
+    fn at_rest(&self, at: &Point, _: f64) -> AtRest {
+        let tangent = Tangent::Leaf(self.linearised(at), Some((self.input, -self.gain.value)));
+        AtRest { force: self.force(at), stiffness: None, tangent }
     }
 
     fn is_linear(&self) -> bool {

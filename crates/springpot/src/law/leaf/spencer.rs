@@ -1,7 +1,7 @@
 //! The magnetorheological damper of Spencer, Dyke, Sain and Carlson.
 
 use super::columns::{ByColumns, Columns};
-use super::contract::Leaf;
+use super::contract::{Clock, Leaf};
 use super::hysteresis::{Hysteresis, Matrix, Values, resolvent};
 use super::springpot::Coefficient;
 use crate::collocation::{MAX_NODES, Nodes, quadrature, quadrature_defect};
@@ -11,7 +11,7 @@ use crate::law::network::{Guard, Holds};
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{InputValue, LocalError, Observation, Point, Power, Powers, Response, Start, Step, Term};
-use crate::law::tangent::{LeafAtRest, Tangent};
+use crate::law::tangent::{AtRest, Tangent};
 
 /// F = c_1·y' + k_1·(x − x_0), y' = (alpha·z + c_0·x' + k_0·(x − y))/(c_0 + c_1), y(0) = x(0), and z of [`Hysteresis`] moved by x' − y',
 /// z(0) = 0 (Spencer, Dyke, Sain & Carlson 1997).
@@ -236,25 +236,19 @@ impl Leaf for Spencer {
         Term { coefficient: self.stiffness.value + if slow > 0.0 { inner } else { 0.0 }, order: 0.0 }
     }
 
-    /// y has caught up with x and z is 0: the accumulator alone remains.
-    fn at_rest(&self, at: &Point, _: f64) -> LeafAtRest {
-        let stiffness = self.stiffness.value;
-        let force = stiffness * (at.stroke - self.rest.value);
-        let term = Term { coefficient: stiffness, order: 0.0 };
-        LeafAtRest { force, stiffness: Some(stiffness), term, input: None, damping: 0.0 }
-    }
-
-    /// About z = 0, where the hysteresis is the spring alpha·A.
-    fn tangent(&self, at: &Point) -> Option<Tangent> {
+    /// y has caught up with x and z is 0: the accumulator alone remains. Small motions are about z = 0, where the hysteresis is the spring alpha·A.
+    fn at_rest(&self, at: &Point, _: f64) -> AtRest {
         let Now { fast, slow, alpha } = self.coefficients_at(at.inputs);
-        let leaf = |coefficient: f64, order: f64| Tangent::Leaf(Term { coefficient, order }, None);
+        let stiffness = self.stiffness.value;
         let elastic = self.inner_stiffness.value + alpha.value * self.hysteresis.slope_at_rest::<f64>();
-        let inner = Tangent::Parallel(vec![leaf(elastic, 0.0), leaf(fast, 1.0)]);
-        Some(Tangent::Parallel(vec![leaf(self.stiffness.value, 0.0), Tangent::Series(vec![leaf(slow, 1.0), inner])]))
+        let inner = Tangent::Parallel(vec![Tangent::spring(elastic), Tangent::dashpot(fast)]);
+        let behind = Tangent::Series(vec![Tangent::dashpot(slow), inner]);
+        let tangent = Tangent::Whole(Box::new(Tangent::Parallel(vec![Tangent::spring(stiffness), behind])));
+        AtRest { force: stiffness * (at.stroke - self.rest.value), stiffness: Some(stiffness), tangent }
     }
 
-    fn has_clock(&self) -> bool {
-        true
+    fn clock(&self) -> Clock {
+        Clock::Own
     }
 
     fn holds(&self) -> Holds {

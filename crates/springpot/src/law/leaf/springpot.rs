@@ -16,7 +16,7 @@ use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::Course;
 use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
-use crate::law::tangent::LeafAtRest;
+use crate::law::tangent::{AtRest, Tangent};
 use crate::law::variation::{
     ObservationVariation, PointVariation, PowersVariation, StepVariation, VariationMut, VariationRef, add,
 };
@@ -553,20 +553,15 @@ impl Leaf for Springpot {
         Some(Term { coefficient, order: self.alpha.slope })
     }
 
-    fn at_rest(&self, at: &Point, held: f64) -> LeafAtRest {
+    fn at_rest(&self, at: &Point, held: f64) -> AtRest {
         let term = self.linearised(at);
         let Term { coefficient, order } = term;
+        let tangent = Tangent::Leaf(term, None);
         if order > 0.0 {
-            return LeafAtRest { force: 0.0, stiffness: None, term, input: None, damping: 0.0 };
+            return AtRest { force: 0.0, stiffness: None, tangent };
         }
         let held = if self.derivative == Derivative::Caputo { held } else { 0.0 };
-        LeafAtRest {
-            force: coefficient * (at.stroke - held),
-            stiffness: Some(coefficient),
-            term,
-            input: None,
-            damping: 0.0,
-        }
+        AtRest { force: coefficient * (at.stroke - held), stiffness: Some(coefficient), tangent }
     }
 
     fn holds(&self) -> Holds {

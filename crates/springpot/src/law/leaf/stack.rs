@@ -1,7 +1,7 @@
 //! A piezo stack and the circuit that drives it.
 
 use super::columns::{ByColumns, Columns};
-use super::contract::{Leaf, When};
+use super::contract::{Clock, Leaf, When};
 use super::hysteresis::{Hysteresis, Matrix, Values, eliminate, resolvent};
 use crate::collocation::{MAX_NODES, Nodes, quadrature, quadrature_defect};
 use crate::dual::{Dual, Real};
@@ -10,10 +10,9 @@ use crate::law::network::{Guard, Holds};
 use crate::law::prandtl_ishlinskii::Stop;
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
-use crate::law::step::{
-    Electric, InputValue, LocalError, Observation, Point, Power, Powers, Response, Start, Step, Term,
-};
-use crate::law::tangent::{LeafAtRest, Tangent};
+use crate::law::step::{InputValue, LocalError, Observation, Point, Power, Powers, Response, Start, Step, Term};
+use crate::law::tangent::{AtRest, Tangent};
+use crate::law::told::Told;
 
 /// Iterations for the charge at the nodes where stops bend its way.
 const MOST_ITERATIONS: usize = 60;
@@ -427,7 +426,11 @@ impl Leaf for Stack {
         Some(self)
     }
 
-    fn electric(&self, when: When, at: &Point, state: StateRef) -> Option<Electric> {
+    fn tells(&self) -> &'static [Told] {
+        &[Told::VOLTAGE, Told::CHARGE, Told::CURRENT]
+    }
+
+    fn tell(&self, when: When, at: &Point, state: StateRef, take: &mut dyn FnMut(f64)) {
         let kept = self.kept(state.variables);
         let [charge, z] = match when {
             When::Within(step, theta) => self.until(step, theta, &kept, &self.solve(step, &kept)),
@@ -436,11 +439,7 @@ impl Leaf for Stack {
         let drop = self.drop_at(&kept, charge, z);
         let [drive, _] = self.driven(&kept, at.inputs[0].value);
         let voltage = self.voltage(charge, at.stroke) + drop;
-        Some(Electric { voltage, charge, current: (drive - voltage) / self.resistance.value })
-    }
-
-    fn is_electric(&self) -> bool {
-        true
+        [voltage, charge, (drive - voltage) / self.resistance.value].into_iter().for_each(take);
     }
 
     /// Faster than the circuit: its charge stays.
@@ -449,18 +448,10 @@ impl Leaf for Stack {
         Term { coefficient: coupling * coupling / self.capacitance.value, order: 0.0 }
     }
 
-    /// V has come to U.
-    fn at_rest(&self, at: &Point, _: f64) -> LeafAtRest {
-        let coupling = self.coupling.value;
-        let [force, input] = [-coupling * at.inputs[0].value, -coupling];
-        LeafAtRest { force, stiffness: None, term: self.linearised(at), input: Some((0, input)), damping: 0.0 }
-    }
-
-    /// The spring T²/C in series with the dashpot T²R, the hysteresis about 0 beside it, and the force −T·U.
-    fn tangent(&self, _: &Point) -> Option<Tangent> {
+    /// V has come to U. Small motions meet the spring T²/C in series with the dashpot T²R, the hysteresis about 0 beside that, and the force −T·U.
+    fn at_rest(&self, at: &Point, _: f64) -> AtRest {
         let coupling = self.coupling.value;
         let square = coupling * coupling;
-        let leaf = |coefficient: f64, order: f64| Tangent::Leaf(Term { coefficient, order }, None);
         let (elastic, drive) = match &self.drop {
             VoltageDrop::None => (0.0, 1.0),
             VoltageDrop::BoucWen { alpha_h, hysteresis } => (alpha_h.value * hysteresis.slope_at_rest::<f64>(), 1.0),
@@ -471,12 +462,15 @@ impl Leaf for Stack {
         };
         let source = Tangent::Leaf(Term { coefficient: 0.0, order: 0.0 }, Some((0, -coupling * drive)));
         let free = self.free_capacitance::<f64>();
-        let inner = vec![leaf(square * self.resistance.value, 1.0), leaf(square * elastic / free, 0.0), source];
-        Some(Tangent::Series(vec![leaf(square / self.capacitance.value, 0.0), Tangent::Parallel(inner)]))
+        let lossy = Tangent::dashpot(square * self.resistance.value);
+        let inner = Tangent::Parallel(vec![lossy, Tangent::spring(square * elastic / free), source]);
+        let circuit = Tangent::Series(vec![Tangent::spring(square / self.capacitance.value), inner]);
+        let force = -coupling * at.inputs[0].value;
+        AtRest { force, stiffness: None, tangent: Tangent::Whole(Box::new(circuit)) }
     }
 
-    fn has_clock(&self) -> bool {
-        true
+    fn clock(&self) -> Clock {
+        Clock::Own
     }
 
     fn holds(&self) -> Holds {

@@ -8,7 +8,7 @@ use crate::law::network::{Holds, LeafPart};
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
-use crate::law::tangent::LeafAtRest;
+use crate::law::tangent::AtRest;
 use crate::law::variation::{
     ObservationVariation, PointVariation, PowersVariation, StepVariation, VariationMut, VariationRef, add,
 };
@@ -75,11 +75,6 @@ impl Unshifted {
             add(&mut change, -at.rate / (factor * factor), by_factor);
         }
         change
-    }
-
-    /// A term by its own clock in reduced time.
-    fn reduced(&self, term: Term, at: &Point) -> Term {
-        Term { coefficient: term.coefficient * self.factor(at.inputs).powf(-term.order), ..term }
     }
 }
 
@@ -234,12 +229,12 @@ impl Leaf for Unshifted {
     }
 
     fn linearised(&self, at: &Point) -> Term {
-        self.reduced(self.leaf.linearised(&self.point(at)), at)
+        self.leaf.linearised(&self.point(at)).shifted(self.factor(at.inputs).recip())
     }
 
-    fn at_rest(&self, at: &Point, held: f64) -> LeafAtRest {
+    fn at_rest(&self, at: &Point, held: f64) -> AtRest {
         let rest = self.leaf.at_rest(&self.point(at), held);
-        LeafAtRest { term: self.reduced(rest.term, at), damping: rest.damping / self.factor(at.inputs), ..rest }
+        AtRest { tangent: rest.tangent.shifted(self.factor(at.inputs).recip(), &Some), ..rest }
     }
 
     fn holds(&self) -> Holds {

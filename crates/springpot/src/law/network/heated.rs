@@ -15,10 +15,9 @@ use super::{LeafPart, Network, Series};
 use crate::collocation::{MAX_NODES, Nodes, lagrange_row};
 use crate::fractional::KernelError;
 use crate::law::heat::Heat;
-use crate::law::leaf::Unshifted;
+use crate::law::leaf::{self, Unshifted};
 use crate::law::state::{State, StateRef};
-use crate::law::step::{InputValue, Point, Powers, Start, Step, Term};
-use crate::law::tangent::Tangent;
+use crate::law::step::{InputValue, Point, Powers, Start, Step};
 use clock::Clock;
 use std::sync::Arc;
 use warming::Temperatures;
@@ -393,7 +392,7 @@ fn unshifted(law: Network, factor: usize) -> (Network, bool) {
         (parts.into_iter().map(|(part, _)| part).collect(), any)
     };
     match law {
-        Network::Leaf(part) if part.leaf.keeps_the_wall_clock() => {
+        Network::Leaf(part) if part.leaf.clock() == leaf::Clock::Wall => {
             let name = part.name.clone();
             (Network::Leaf(LeafPart { name, leaf: Arc::new(Unshifted { leaf: part, factor }) }), true)
         }
@@ -406,28 +405,5 @@ fn unshifted(law: Network, factor: usize) -> (Network, bool) {
             (Network::Series(Series::new(parts)), any)
         }
         other => (other, false),
-    }
-}
-
-impl Term {
-    /// c·D^order in ξ as it is in t, where times are longer by a_T = `factor`.
-    fn shifted(self, factor: f64) -> Self {
-        Self { coefficient: self.coefficient * factor.powf(self.order), ..self }
-    }
-}
-
-impl Tangent {
-    /// The same with times longer by a_T = `factor`, its inputs under the numbers that `outside` gives them.
-    fn shifted(self, factor: f64, outside: &dyn Fn(usize) -> Option<usize>) -> Self {
-        let all = |parts: Vec<Self>| parts.into_iter().map(|part| part.shifted(factor, outside)).collect();
-        match self {
-            Self::Leaf(term, input) => {
-                let input = input.and_then(|(input, gain)| Some((outside(input)?, gain)));
-                Self::Leaf(term.shifted(factor), input)
-            }
-            Self::Whole(tangent) => Self::Whole(Box::new(tangent.shifted(factor, outside))),
-            Self::Parallel(parts) => Self::Parallel(all(parts)),
-            Self::Series(parts) => Self::Series(all(parts)),
-        }
     }
 }

@@ -10,7 +10,7 @@ use crate::law::past::Recalled;
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
-use crate::law::tangent::{AtRest, LeafAtRest, Tangent};
+use crate::law::tangent::AtRest;
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -155,11 +155,6 @@ impl Part for LeafPart {
         }
     }
 
-    fn modulus(&self, at: &Point, s: Complex64) -> Complex64 {
-        let Term { coefficient, order } = self.leaf.linearised(at);
-        coefficient * if order == 0.0 { Complex64::ONE } else { s.powf(order) }
-    }
-
     fn modulus_slope(&self, at: &Point, [s, by]: [Complex64; 2]) -> Option<[Complex64; 2]> {
         let Term { coefficient, order } = self.leaf.linearised(at);
         let changed = self.leaf.linearised_slope(at)?;
@@ -171,7 +166,7 @@ impl Part for LeafPart {
 
     fn harmonic(&self, sine: &Sine) -> Option<Complex64> {
         if self.leaf.is_linear() {
-            return Some(Part::modulus(self, &sine.at, Complex64::new(0.0, sine.omega)));
+            return Some(self.leaf.at_rest(&sine.at, 0.0).tangent.modulus(Complex64::new(0.0, sine.omega)));
         }
         let formula = self.leaf.harmonic(&sine.at, sine.amplitude, sine.omega);
         match self.leaf.size() == StateSize::default() {
@@ -190,16 +185,7 @@ impl Part for LeafPart {
     }
 
     fn at_rest(&self, at: &Point, held: f64) -> Option<AtRest> {
-        let LeafAtRest { force, stiffness, term, input, damping } = self.leaf.at_rest(at, held);
-        if let Some(tangent) = self.leaf.tangent(at) {
-            return Some(AtRest { force, stiffness, tangent: Tangent::Whole(Box::new(tangent)) });
-        }
-        let tangent = Tangent::Leaf(term, input);
-        if damping == 0.0 {
-            return Some(AtRest { force, stiffness, tangent });
-        }
-        let beside = Tangent::Leaf(Term { coefficient: damping, order: 1.0 }, None);
-        Some(AtRest { force, stiffness, tangent: Tangent::Parallel(vec![tangent, beside]) })
+        Some(self.leaf.at_rest(at, held))
     }
 }
 

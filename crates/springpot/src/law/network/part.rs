@@ -181,11 +181,6 @@ pub(in crate::law) trait Part: std::fmt::Debug {
         if self.size().variables > 0 { usize::MAX } else { 0 }
     }
 
-    /// F/x under e^{st} where it is linear.
-    fn modulus(&self, at: &Point, s: Complex64) -> Complex64 {
-        self.parts().iter().map(|part| part.ask().modulus(at, s)).sum()
-    }
-
     /// [`Network::modulus_slope`].
     fn modulus_slope(&self, at: &Point, s: [Complex64; 2]) -> Option<[Complex64; 2]> {
         self.parts().iter().try_fold([Complex64::ZERO; 2], |[value, slope], part| {

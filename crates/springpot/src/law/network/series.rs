@@ -509,16 +509,9 @@ impl Part for Series {
 
     fn harmonic(&self, sine: &Sine) -> Option<Complex64> {
         match self.is_linear() {
-            true => Some(self.modulus(&sine.at, Complex64::new(0.0, sine.omega))),
+            true => Some(self.at_rest(&sine.at, 0.0)?.tangent.modulus(Complex64::new(0.0, sine.omega))),
             false => harmonic::driven(&Network::Series(self.clone()), sine),
         }
-    }
-
-    fn modulus(&self, at: &Point, s: Complex64) -> Complex64 {
-        let moduli = self.parts.iter().map(|part| part.modulus(at, s));
-        // At s = 0 one that carries nothing lets all of them carry nothing.
-        let compliance = moduli.map(|one| (one != Complex64::ZERO).then(|| one.inv())).sum::<Option<Complex64>>();
-        compliance.map_or(Complex64::ZERO, |compliance| compliance.inv())
     }
 
     fn modulus_slope(&self, at: &Point, s: [Complex64; 2]) -> Option<[Complex64; 2]> {

@@ -220,11 +220,6 @@ impl Part for Heated {
         self.law.has_guards(&self.still(at).point())
     }
 
-    fn modulus(&self, at: &Point, s: Complex64) -> Complex64 {
-        let place = self.still(at);
-        self.law.modulus(&place.point(), s * place.factor)
-    }
-
     fn modulus_slope(&self, at: &Point, s: [Complex64; 2]) -> Option<[Complex64; 2]> {
         let place = self.still(at);
         self.law.modulus_slope(&place.point(), s.map(|s| s * place.factor))
