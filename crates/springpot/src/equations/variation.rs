@@ -15,7 +15,7 @@ use super::solve::Solve;
 use crate::collocation::STAGES;
 use crate::dynamics::{Kinematics, RneaDerivatives, Workspace, add_gravity_effort, add_inertia_effort};
 use crate::elements::{Forces, Pull, Reading};
-use crate::law::variation::{LawVariation, ObservationVariation, PointVariation, StepVariation};
+use crate::law::variation::{LawVariation, ObservationVariation, PointVariation, StepVariation, VariationError};
 use crate::law::{Derivative, Network, Response};
 use crate::model::{FrictionLaw, Model};
 use crate::sensitivity::{Seed, Sensitivity, SensitivityError};
@@ -45,6 +45,8 @@ pub(crate) struct Variation {
     pub(crate) nodes: [NodeVariation; ROW + 1],
     /// How large q and v have changed so far, in the blocks of the nodes.
     sizes: [Vec<f64>; 2],
+    /// How large the inner variables of every element have.
+    hidden: Vec<Vec<f64>>,
     singular: Singular,
     forces: Forces,
     workspace: Workspace,
@@ -65,6 +67,9 @@ const BESIDE: f64 = 1e-4;
 
 /// Change of the forces, in units of the largest, at which they are found.
 const SETTLED: f64 = 1e-12;
+
+/// What changes may err in a step, in units of what the motion may: so they come to the accuracy that the motion comes to in its own steps.
+pub(crate) const TANGENTS: f64 = 4.0;
 
 /// The node of a row.
 pub(crate) const ROW: usize = STAGES + 1;
@@ -193,6 +198,7 @@ impl Variation {
             inertias: Inertias::of(by),
             nodes: std::array::from_fn(|_| node()),
             sizes: [zeros(), zeros()],
+            hidden: vec![Vec::new(); extended.elements.len()],
             singular: Singular::new(extended.elements.len(), model.nv(), count),
             forces: Forces::default(),
             workspace: Workspace::new(model),
@@ -232,8 +238,36 @@ impl Variation {
         [q[at].max(last.q[at].abs()), v[at].max(last.v[at].abs())]
     }
 
+    /// The estimate of the step's error of what changes of the inner variables of laws, the worst one in units of its tolerance, `rtol` of its size.
+    pub(crate) fn hidden_error(&self, equations: &Equations, rtol: f64) -> f64 {
+        let (mut worst, count) = (0.0f64, self.count());
+        for ((e, element), sizes) in self.elements.iter().enumerate().zip(&self.hidden) {
+            if element.law.variables().is_empty() {
+                continue;
+            }
+            let told = of_step(count, [&element.stroke, &element.rate], &element.inputs);
+            equations.bank.vary_errors(e, &told, &element.law, &mut |variable, own| {
+                let VariationError { parameter: p, error, change, coming, size } = own;
+                if error == 0.0 || !self.knows(p) {
+                    return;
+                }
+                let typical = self.by.parameters[p].typical.abs();
+                let expected = if typical > 0.0 { BEGUN * size / typical } else { 0.0 };
+                let so_far = sizes.get(variable * count + p).copied().unwrap_or(0.0);
+                let share = error / (rtol * so_far.max(change).max(coming).max(expected));
+                worst = if share.is_nan() { f64::INFINITY } else { worst.max(share) };
+            });
+        }
+        worst
+    }
+
     /// Takes in how large the changes where the next step starts are.
     fn take_sizes(&mut self) {
+        for (element, sizes) in self.elements.iter().zip(&mut self.hidden) {
+            let now = element.law.variables();
+            sizes.resize(now.len(), 0.0);
+            sizes.iter_mut().zip(now).for_each(|(size, now)| *size = size.max(now.abs()));
+        }
         let Self { nodes: [start, ..], sizes: [q, v], .. } = self;
         for (sizes, now) in [(q, &start.q), (v, &start.v)] {
             sizes.iter_mut().zip(now).for_each(|(size, now)| *size = size.max(now.abs()));

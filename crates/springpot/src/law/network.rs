@@ -21,7 +21,7 @@ use super::state::{State, StateRef, StateSize};
 use super::step::{InputValue, LeafState, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
 use super::tangent::AtRest;
 use super::told::Told;
-use super::variation::{LawVariation, ObservationVariation, PointVariation, PowersVariation, StepVariation};
+use super::variation::{LawVariation, ObservationVariation, PointVariation, PowersVariation, StepVariation, TakeError};
 use crate::collocation::MAX_NODES;
 use crate::dual::Dual;
 use crate::fractional::Kind as Derivative;
@@ -325,6 +325,19 @@ impl Network {
     /// Takes what changes of an accepted step, which is not in the state yet, into what changes of that.
     pub fn commit_variation(&self, step: &Step, state: &State, told: &StepVariation, own: &mut LawVariation) {
         self.ask().commit_variation(step, &mut state.view(), told, &mut own.view_mut());
+    }
+
+    /// Hands over how well a step knows what parameters change of its inner variables, each with its number ([`super::Leaf::vary_errors`]).
+    pub(crate) fn vary_errors(
+        &self,
+        step: &Step,
+        state: &State,
+        told: &StepVariation,
+        own: &LawVariation,
+        take: TakeError,
+    ) {
+        let all = state.size().variables;
+        self.ask().vary_errors(step, &mut state.view(), told, &mut own.view(), &mut |k, error| take(all - k, error));
     }
 
     /// Adds what parameters change of its energy flows at the start and at the nodes of a step.

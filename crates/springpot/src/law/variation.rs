@@ -58,6 +58,24 @@ pub struct PowersVariation<'a> {
     pub input: &'a mut [f64],
 }
 
+/// How well a step knows what one parameter changes of one inner variable, in the unit of that by the unit of the parameter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VariationError {
+    /// Which parameter.
+    pub parameter: usize,
+    /// Estimate of the error at the end of the step, ≥ 0.
+    pub error: f64,
+    /// |What changes there|.
+    pub change: f64,
+    /// By how much that changes over the step at most.
+    pub coming: f64,
+    /// How large the variable itself is, or becomes over the step.
+    pub size: f64,
+}
+
+/// Takes such errors, each with the number of its inner variable.
+pub type TakeError<'a> = &'a mut dyn FnMut(usize, VariationError);
+
 /// What parameters change of a law's own: its numbers, and what it keeps between steps.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct LawVariation {

@@ -1,7 +1,7 @@
 //! What parameters change of the elements of a bank.
 
 use super::{Banked, ElementBank, Kept};
-use crate::law::variation::{LawVariation, ObservationVariation, PointVariation, StepVariation};
+use crate::law::variation::{LawVariation, ObservationVariation, PointVariation, StepVariation, TakeError};
 use crate::law::{Point, State, When};
 
 impl ElementBank {
@@ -15,6 +15,14 @@ impl ElementBank {
         let Banked { law, kept, told, .. } = &self.elements[e];
         if let Some(Kept { state, .. }) = kept {
             law.vary(&told.step(self.step), state, by, own, forces);
+        }
+    }
+
+    /// Hands over how well the step knows what changes of the inner variables of element `e`, each with its number.
+    pub(crate) fn vary_errors(&self, e: usize, by: &StepVariation, own: &LawVariation, take: TakeError) {
+        let Banked { law, kept, told, .. } = &self.elements[e];
+        if let Some(Kept { state, .. }) = kept {
+            law.vary_errors(&told.step(self.step), state, by, own, take);
         }
     }
 

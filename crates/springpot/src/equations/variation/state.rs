@@ -15,6 +15,7 @@ pub(crate) struct VariationState {
     /// Blocks of q, v and a where the next step starts.
     motion: [Vec<f64>; 3],
     sizes: [Vec<f64>; 2],
+    hidden: Vec<Vec<f64>>,
     singular: SingularState,
     laws: Vec<LawVariation>,
     saltation: Saltation,
@@ -30,6 +31,7 @@ impl Variation {
         VariationState {
             motion: [q.clone(), v.clone(), a.clone()],
             sizes: self.sizes.clone(),
+            hidden: self.hidden.clone(),
             singular: self.singular.save(self.count()),
             laws,
             control,
@@ -39,10 +41,10 @@ impl Variation {
 
     /// Goes on from what was saved where the run is at `start`; `false` where that is of another one.
     pub(crate) fn load(&mut self, state: VariationState, equations: &Equations, start: Node) -> bool {
-        let VariationState { motion: [q, v, a], sizes, singular, laws, control, saltation } = state;
+        let VariationState { motion: [q, v, a], sizes, hidden, singular, laws, control, saltation } = state;
         let (blocks, count) = (self.sizes[0].len(), self.count());
         if !self.singular.load(singular, count)
-            || laws.len() != self.elements.len()
+            || [laws.len(), hidden.len()] != [self.elements.len(); 2]
             || !saltation.fits(self.count())
             || [&q, &v, &a].into_iter().chain(&sizes).any(|own| own.len() != blocks)
         {
@@ -56,7 +58,7 @@ impl Variation {
             return false;
         }
         let [node, ..] = &mut self.nodes;
-        (node.q, node.v, node.a, self.sizes) = (q, v, a, sizes);
+        (node.q, node.v, node.a, self.sizes, self.hidden) = (q, v, a, sizes, hidden);
         self.saltation = saltation;
         self.elements.iter_mut().zip(laws).for_each(|(element, law)| element.law = law);
         self.see_start(equations, start);

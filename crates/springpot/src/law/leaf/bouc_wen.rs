@@ -192,6 +192,10 @@ impl Columns for BoucWen {
         take(if step.nodes == Nodes::Midpoint { T::from(2.0) * last - start[0] } else { last });
     }
 
+    fn each_rate<T: Real>(&self, step: &Step<T>, _: &[T], z: &Values<T>, take: &mut dyn FnMut(T, Values<T>)) {
+        take(z[step.nodes.count()], self.rates(step, z));
+    }
+
     fn within<T: Real>(&self, step: &Step<T>, theta: f64, at: &Point<T>, start: &[T], z: &Values<T>) -> Observation<T> {
         let rates = self.rates(step, z);
         let moved: T = step.quadrature(theta).iter().zip(rates).map(|(weight, rate)| T::from(*weight) * rate).sum();

@@ -1,11 +1,13 @@
 //! Leaves whose formulas are asked for numbers, and for numbers with their derivatives.
 
 use super::contract::{Leaf, When};
+use super::hysteresis::Values;
 use crate::dual::{Dual, Real};
 use crate::law::state::StateRef;
 use crate::law::step::{Observation, Point, Power, Step};
 use crate::law::variation::{
-    AtNodes, ObservationVariation, PointVariation, PowersVariation, StepVariation, VariationMut, VariationRef,
+    AtNodes, ObservationVariation, PointVariation, PowersVariation, StepVariation, TakeError, VariationError,
+    VariationMut, VariationRef,
 };
 
 /// A leaf whose formulas are written over [`Real`]: asked with numbers they give its forces, asked with [`Dual`]s what one parameter changes of
@@ -37,6 +39,16 @@ pub trait Columns: Leaf + Clone {
 
     /// Hands over its inner variables at the end of the step.
     fn at_end<T: Real>(&self, _step: &Step<T>, _start: &[T], _solved: &Self::Solved<T>, _take: &mut dyn FnMut(T)) {}
+
+    /// Hands over its inner variables at the end of the step, and how fast they change at its start and at the nodes, where a formula says so.
+    fn each_rate<T: Real>(
+        &self,
+        _step: &Step<T>,
+        _start: &[T],
+        _solved: &Self::Solved<T>,
+        _take: &mut dyn FnMut(T, Values<T>),
+    ) {
+    }
 
     /// The leaf at t_n + theta·h.
     fn within<T: Real>(
@@ -70,6 +82,9 @@ pub trait ByColumns {
 
     /// [`Leaf::vary_powers`].
     fn powers(&self, step: &Step, state: StateRef, told: &StepVariation, own: VariationRef, sum: &mut PowersVariation);
+
+    /// [`Leaf::vary_errors`].
+    fn errors(&self, step: &Step, state: StateRef, told: &StepVariation, own: VariationRef, take: TakeError);
 
     /// [`Leaf::vary_at`].
     fn at(
@@ -133,6 +148,24 @@ impl<L: Columns> ByColumns for L {
         });
         lose(self, told, sum.dissipation);
         lose(self, told, sum.input);
+    }
+
+    fn errors(&self, step: &Step, state: StateRef, told: &StepVariation, own: VariationRef, take: TakeError) {
+        each(self, (step, AtNodes::AsTold), state, told, &own, &mut |p, leaf, dual, start, solved| {
+            let mut variable = 0..;
+            leaf.each_rate(dual, start, solved, &mut |end: Dual, rates: Values<Dual>| {
+                let changes = rates.map(|rate| rate.slope);
+                let fastest = rates.iter().fold(0.0f64, |fastest, rate| fastest.max(rate.value.abs()));
+                let error = VariationError {
+                    parameter: p,
+                    error: step.h * step.quadrature_defect(&changes),
+                    change: end.slope.abs(),
+                    coming: step.h * changes.iter().fold(0.0f64, |fastest, rate| fastest.max(rate.abs())),
+                    size: end.value.abs() + step.h * fastest,
+                };
+                variable.next().into_iter().for_each(|k| take(k, error));
+            });
+        });
     }
 
     fn at(

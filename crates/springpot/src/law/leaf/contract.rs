@@ -12,7 +12,7 @@ use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Respo
 use crate::law::tangent::{AtRest, Tangent};
 use crate::law::told::Told;
 use crate::law::variation::{
-    ObservationVariation, PointVariation, PowersVariation, StepVariation, VariationMut, VariationRef,
+    ObservationVariation, PointVariation, PowersVariation, StepVariation, TakeError, VariationMut, VariationRef,
 };
 use num_complex::Complex64;
 
@@ -257,6 +257,11 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
         if let Some(columns) = self.by_columns() {
             columns.commit(step, state, told, own);
         }
+    }
+
+    /// Hands over how well the step knows what changes of its inner variables, in their order; nothing of those that follow exactly.
+    fn vary_errors(&self, step: &Step, state: StateRef, told: &StepVariation, own: VariationRef, take: TakeError) {
+        self.by_columns().into_iter().for_each(|columns| columns.errors(step, state, told, own, take));
     }
 
     /// Adds what changes of its energy flows at the start and at the nodes ([`Leaf::powers`]), where strokes and rates change as told.

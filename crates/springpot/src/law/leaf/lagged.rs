@@ -11,7 +11,8 @@ use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
 use crate::law::tangent::AtRest;
 use crate::law::variation::{
-    AtNodes, ObservationVariation, PointVariation, PowersVariation, StepVariation, VariationMut, VariationRef,
+    AtNodes, ObservationVariation, PointVariation, PowersVariation, StepVariation, TakeError, VariationError,
+    VariationMut, VariationRef,
 };
 
 /// A leaf whose only input is w, w' = −eta·(w − u), w(0) = u(0), u the first input of the law: the current of a driver that was told u.
@@ -294,6 +295,30 @@ impl<L: Leaf> Leaf for Lagged<L> {
         let followed = self.follow(step, start);
         let changes = self.vary_command(step, start, &followed, told, &own.take(1, OWN));
         self.leaf.vary_powers(&followed.step(step), rest, &changes.step(told), own, sum);
+    }
+
+    fn vary_errors(&self, step: &Step, state: StateRef, told: &StepVariation, mut own: VariationRef, take: TakeError) {
+        let (start, rest) = Self::split(state);
+        let (followed, last) = (self.follow(step, start), step.nodes.count());
+        let (count, of_w) = (own.count, own.take(1, OWN));
+        let changes = self.vary_command(step, start, &followed, told, &of_w);
+        let fastest = followed.inputs[..=last].iter().fold(0.0f64, |fastest, input| fastest.max(input.rate.abs()));
+        for parameter in 0..count {
+            let [values, rates] = changes.0.each_ref().map(|blocks| {
+                let mut of = blocks.iter().skip(parameter).step_by(count);
+                std::array::from_fn(|_| of.next().copied().unwrap_or(0.0))
+            });
+            let (values, rates): (Values, Values) = (values, rates);
+            let error = VariationError {
+                parameter,
+                error: step.h * step.quadrature_defect(&rates),
+                change: values[last].abs(),
+                coming: step.h * rates.iter().fold(0.0f64, |fastest, rate| fastest.max(rate.abs())),
+                size: followed.inputs[last].value.abs() + step.h * fastest,
+            };
+            take(0, error);
+        }
+        self.leaf.vary_errors(&followed.step(step), rest, &changes.step(told), own, &mut |k, error| take(1 + k, error));
     }
 
     fn vary_at(

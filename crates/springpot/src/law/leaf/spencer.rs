@@ -356,6 +356,12 @@ impl Columns for Spencer {
         }
     }
 
+    fn each_rate<T: Real>(&self, step: &Step<T>, _: &[T], solved: &Solved<T>, take: &mut dyn FnMut(T, Values<T>)) {
+        let last = step.nodes.count();
+        take(solved.y[last], solved.y_rate);
+        take(solved.z[last], solved.z_rate);
+    }
+
     fn within<T: Real>(
         &self,
         step: &Step<T>,

@@ -325,6 +325,17 @@ impl Stack {
     }
 }
 
+impl Stack {
+    /// z' at the start and at the nodes.
+    fn z_rates<T: Real>(&self, of: &Hysteresis, step: &Step<T>, current: &Values<T>, z: &Values<T>) -> Values<T> {
+        let moves = T::from(1.0) / self.free_capacitance();
+        std::array::from_fn(|k| match k <= step.nodes.count() {
+            true => of.rate(z[k], moves * current[k]),
+            false => 0.0.into(),
+        })
+    }
+}
+
 impl Leaf for Stack {
     fn name(&self) -> &'static str {
         "stack"
@@ -398,9 +409,11 @@ impl Leaf for Stack {
         };
         push(&current, charge[last], ROUNDING * volts * self.capacitance.value);
         if let VoltageDrop::BoucWen { hysteresis, .. } = &self.drop {
-            let moves = self.free_capacitance::<f64>().recip();
-            let rates = std::array::from_fn(|k| if k > last { 0.0 } else { hysteresis.rate(z[k], moves * current[k]) });
-            push(&rates, z[last], ROUNDING * volts * hysteresis.slope_at_rest::<f64>());
+            push(
+                &self.z_rates(hysteresis, step, &current, &z),
+                z[last],
+                ROUNDING * volts * hysteresis.slope_at_rest::<f64>(),
+            );
         }
     }
 
@@ -530,6 +543,15 @@ impl Leaf for Stack {
 
 impl Columns for Stack {
     type Solved<T: Real> = Solved<T>;
+
+    /// Charge and z; drops of stops follow from the charge exactly.
+    fn each_rate<T: Real>(&self, step: &Step<T>, _: &[T], solved: &Solved<T>, take: &mut dyn FnMut(T, Values<T>)) {
+        let (Solved { charge, current, z, .. }, last) = (solved, step.nodes.count());
+        take(charge[last], *current);
+        if let VoltageDrop::BoucWen { hysteresis, .. } = &self.drop {
+            take(z[last], self.z_rates(hysteresis, step, current, z));
+        }
+    }
 
     fn each_number(&mut self, take: &mut dyn FnMut(&mut Dual)) {
         let Self { coupling, capacitance, resistance, stiffness, drop, .. } = self;

@@ -8,7 +8,7 @@ use crate::law::leaf::When;
 use crate::law::state::StateRef;
 use crate::law::step::{Point, Step};
 use crate::law::variation::{
-    ObservationVariation, PointVariation, PowersVariation, StepVariation, VariationMut, VariationRef,
+    ObservationVariation, PointVariation, PowersVariation, StepVariation, TakeError, VariationMut, VariationRef,
 };
 
 /// A part whose derivatives can be asked for.
@@ -18,6 +18,13 @@ pub(in crate::law) trait Vary: Part {
     /// Hands over the numbers of its own and of its parts, in their order, with their derivatives where it was built of such.
     fn numbers(&self, take: &mut dyn FnMut(Dual)) {
         self.parts().iter().for_each(|part| part.ask().numbers(take));
+    }
+
+    /// How many numbers it hands over.
+    fn number_count(&self) -> usize {
+        let mut count = 0;
+        self.numbers(&mut |_| count += 1);
+        count
     }
 
     /// The part of it of which no derivative is known ([`crate::law::Leaf::numbers`]), as it is called.
@@ -62,6 +69,25 @@ pub(in crate::law) trait Vary: Part {
     /// Takes what changes of an accepted step into what changes of its state.
     fn commit_variation(&self, step: &Step, state: &mut StateRef, told: &StepVariation, own: &mut VariationMut) {
         self.parts().iter().for_each(|part| part.ask().commit_variation(step, state, told, own));
+    }
+
+    /// Hands over how well the step knows what changes of the inner variables of its leaves ([`crate::law::Leaf::vary_errors`]); the number of a
+    /// variable counts from the last one of the law.
+    fn vary_errors(
+        &self,
+        step: &Step,
+        state: &mut StateRef,
+        told: &StepVariation,
+        own: &mut VariationRef,
+        take: TakeError,
+    ) {
+        self.parts().iter().for_each(|part| part.ask().vary_errors(step, state, told, own, take));
+    }
+
+    /// Passes over its share of a state, and of what changes of it.
+    fn pass_by(&self, state: &mut StateRef, own: &mut VariationRef) {
+        own.take(self.number_count(), self.size());
+        self.pass(state);
     }
 
     /// Adds what changes of its energy flows at the start and at the nodes ([`crate::law::Leaf::vary_powers`]).
@@ -119,15 +145,6 @@ pub(in crate::law) trait Vary: Part {
 /// Parts side by side.
 impl Vary for Vec<Network> {}
 
-impl LeafPart {
-    /// How many numbers its parameters make.
-    fn number_count(&self) -> usize {
-        let mut count = 0;
-        self.leaf.numbers(&mut |_| count += 1);
-        count
-    }
-}
-
 impl Vary for LeafPart {
     fn numbers(&self, take: &mut dyn FnMut(Dual)) {
         self.leaf.numbers(take);
@@ -172,6 +189,19 @@ impl Vary for LeafPart {
     fn commit_variation(&self, step: &Step, state: &mut StateRef, told: &StepVariation, own: &mut VariationMut) {
         let size = self.leaf.size();
         self.leaf.commit_variation(step, state.take(size), told, own.take(self.number_count(), size));
+    }
+
+    fn vary_errors(
+        &self,
+        step: &Step,
+        state: &mut StateRef,
+        told: &StepVariation,
+        own: &mut VariationRef,
+        take: TakeError,
+    ) {
+        let (size, behind) = (self.leaf.size(), own.variables.len() / own.count.max(1));
+        let own = own.take(self.number_count(), size);
+        self.leaf.vary_errors(step, state.take(size), told, own, &mut |k, error| take(behind - k, error));
     }
 
     fn vary_powers(

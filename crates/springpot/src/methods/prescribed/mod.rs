@@ -11,8 +11,8 @@ use crate::elements::NoDirection;
 use crate::equations::context::Context;
 use crate::equations::evaluate::Evaluation;
 use crate::equations::kinks::Seen;
-use crate::equations::{Change, Look, Scale, on_grid};
-use crate::equations::{Node, ROW, Variation};
+use crate::equations::{Change, Equations, Look, Scale, on_grid};
+use crate::equations::{Node, ROW, TANGENTS, Variation};
 use crate::methods::stepper::{Behind, Stepper, Target, Trial};
 use crate::motion::Trajectory;
 use crate::signal::Agenda;
@@ -189,6 +189,16 @@ impl Prescribed {
         ROUNDING * (self.largest[e] + recorder.equations.bank.from() * fastest)
     }
 
+    /// The error of what parameters change of inner variables over the step, where that shares in the choice of steps.
+    fn variation_error(&self, recorder: &mut Recorder, step: &Target) -> f64 {
+        let Recorder { evaluations, equations, variation, settings, .. } = recorder;
+        let Some(variation) = variation.as_deref_mut().filter(|variation| variation.shares_in_steps()) else {
+            return 0.0;
+        };
+        see(variation, evaluations, equations, step);
+        variation.hidden_error(equations, TANGENTS * settings.rtol)
+    }
+
     /// The first evaluation behind a kink, to which coordinates must not jump from that at index `from` of the recorder.
     fn look_across(
         &self,
@@ -250,6 +260,16 @@ fn turned_over(cx: Context, recorder: &Recorder, t: f64, h: f64) -> Result<Optio
     Ok(None)
 }
 
+/// Sees what parameters change of the elements along the step.
+fn see(variation: &mut Variation, evaluations: &[Evaluation], equations: &Equations, step: &Target) {
+    for (i, at) in evaluations.iter().enumerate().skip(1) {
+        let t = if i == STAGES { step.end_inputs() } else { at.t };
+        variation.look(i, Node { t, q: &at.q, v: &at.v, a: &at.a });
+        variation.take_start(i);
+        (0..equations.bank.len()).for_each(|e| variation.measure(e, i));
+    }
+}
+
 impl Stepper for Prescribed {
     fn longest_step(&self, _: Context, settings: &Settings) -> f64 {
         settings.max_step.unwrap_or(settings.end * LONGEST_STEP).min(settings.end)
@@ -299,6 +319,18 @@ impl Stepper for Prescribed {
             let too_small = self.gives_up(cx, recorder, &step, size);
             return too_small.map_or(Ok(Trial::Rejected { size }), Err);
         }
+        let next = match self.variation_error(recorder, &step) {
+            0.0 => next,
+            error => {
+                let own = step.size * StepError { memory: error, ..StepError::NONE }.factor();
+                if error > 1.0 {
+                    let size = own.min(0.7 * step.size);
+                    let too_small = self.gives_up(cx, recorder, &step, size);
+                    return too_small.map_or(Ok(Trial::Rejected { size }), Err);
+                }
+                next.min(own)
+            }
+        };
         // Before any row is written, since a jump must leave none behind.
         self.behind = match step.behind {
             Behind::Kink(after) => Some(self.look_across(cx, recorder, STAGES, after)?),
@@ -310,11 +342,8 @@ impl Stepper for Prescribed {
     fn vary(&mut self, _: Context, recorder: &mut Recorder, step: &Target) -> Result<(), RunError> {
         let Recorder { evaluations, equations, variation, .. } = recorder;
         let Some(variation) = variation else { return Ok(()) };
-        for (i, at) in evaluations.iter().enumerate().skip(1) {
-            let t = if i == STAGES { step.end_inputs() } else { at.t };
-            variation.look(i, Node { t, q: &at.q, v: &at.v, a: &at.a });
-            variation.take_start(i);
-            (0..equations.bank.len()).for_each(|e| variation.measure(e, i));
+        if !variation.shares_in_steps() {
+            see(variation, evaluations, equations, step);
         }
         variation.ask(equations);
         Ok(())

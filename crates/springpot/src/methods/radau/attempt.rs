@@ -4,6 +4,7 @@ use super::method::Radau;
 use super::newton::Outcome;
 use crate::account::recorder::Recorder;
 use crate::collocation::STAGES;
+use crate::equations::TANGENTS;
 use crate::equations::context::Context;
 use crate::equations::kinks::Seen;
 use crate::methods::stepper::Target;
@@ -100,7 +101,8 @@ impl Radau {
             return 0.0;
         };
         if self.step.vary(equations, variation, target.size, target.end_inputs()) {
-            self.step.estimate_variation(equations, variation, target.size)
+            let hidden = variation.hidden_error(equations, TANGENTS * recorder.settings.rtol);
+            self.step.estimate_variation(equations, variation, target.size).max(hidden)
         } else {
             f64::INFINITY
         }

@@ -9,13 +9,10 @@ use super::estimate::raw;
 use super::step::{EstimateScratch, RadauStep};
 use crate::collocation::radau::{A, A_SQUARED, GAMMA};
 use crate::collocation::{RADAU_NODES, STAGES, TABLEAU};
-use crate::equations::{Equations, ROW, Variation};
+use crate::equations::{Equations, ROW, TANGENTS, Variation};
 
 /// How often what changes of temperatures is found together with what changes of the motion.
 const MOST_PASSES: usize = 20;
-
-/// What changes may err in a step, in units of what the motion may: so they come to the accuracy that the motion comes to in its own steps.
-const TANGENTS: f64 = 4.0;
 
 impl RadauStep {
     /// Works out what changes over the step that was solved, of size `h`, where signals at its end are those at `t_end`; false where nothing does

@@ -18,7 +18,7 @@ use crate::law::network::vary::Vary;
 use crate::law::state::StateRef;
 use crate::law::step::{InputValue, Point, Response, Step};
 use crate::law::variation::{
-    ObservationVariation, PointVariation, PowersVariation, StepVariation, VariationMut, VariationRef, add,
+    ObservationVariation, PointVariation, PowersVariation, StepVariation, TakeError, VariationMut, VariationRef, add,
 };
 
 /// Iterations for what changes of the temperatures, and the change of it at which they end.
@@ -541,6 +541,27 @@ impl Vary for Heated {
             }
         }
         self.law.ask().commit_variation(&inside.step(step), state, &changes.step(count), own);
+    }
+
+    /// By the clock of the law, whose steps are the same.
+    fn vary_errors(
+        &self,
+        step: &Step,
+        state: &mut StateRef,
+        told: &StepVariation,
+        own: &mut VariationRef,
+        take: TakeError,
+    ) {
+        let (whole, before) = (*own, *state);
+        let share = self.take_own(own);
+        let numbers = self.all_numbers(&share);
+        let Some((kept, course, inside)) = self.look(step, state) else {
+            (*state, *own) = (before, whole);
+            return self.pass_by(state, own);
+        };
+        let warmed = self.warmed(step, &kept, &course, &inside, *state, told, (&whole, &numbers));
+        let changes = self.told_inside(step, &warmed, told, &numbers, false);
+        self.law.ask().vary_errors(&inside.step(step), state, &changes.step(told.count), own, take);
     }
 
     fn vary_powers(

@@ -20,7 +20,8 @@ use crate::law::network::vary::Vary;
 use crate::law::state::StateRef;
 use crate::law::step::{Course, InputValue, Point, Power, Powers, Response, Step};
 use crate::law::variation::{
-    AtNodes, ObservationVariation, PointVariation, PowersVariation, StepVariation, VariationMut, VariationRef, add,
+    AtNodes, ObservationVariation, PointVariation, PowersVariation, StepVariation, TakeError, VariationMut,
+    VariationRef, add,
 };
 
 /// What one parameter changes over a step: strokes and rates of the parts, and the force at the nodes of the parts.
@@ -75,13 +76,6 @@ impl Looked {
         }
         outer
     }
-}
-
-/// How many numbers a part has.
-pub(super) fn number_count(part: &dyn Vary) -> usize {
-    let mut count = 0;
-    part.numbers(&mut |_| count += 1);
-    count
 }
 
 /// What a clock that parameters move changes of a step: its nodes, as shares of it, and its size.
@@ -527,7 +521,7 @@ impl Vary for Series {
         own: &mut VariationRef,
         forces: &mut [f64],
     ) {
-        let share = own.take(number_count(self), self.size());
+        let share = own.take(self.number_count(), self.size());
         let looked = self.look(step, state, (told, AtNodes::Still), None, share);
         self.parts.iter().for_each(|part| part.ask().pass(state));
         let at_nodes = |[a, b, c, d]: [f64; MAX_NODES]| [0.0, a, b, c, d];
@@ -540,7 +534,7 @@ impl Vary for Series {
     }
 
     fn commit_variation(&self, step: &Step, state: &mut StateRef, told: &StepVariation, own: &mut VariationMut) {
-        let mut share = own.take(number_count(self), self.size());
+        let mut share = own.take(self.number_count(), self.size());
         let count = share.count;
         let Looked { asked, solved, changes, .. } = self.look(step, state, (told, AtNodes::AsTold), None, share.view());
         let (step, strokes) = (asked.step(step), share.take(0, self.own_size()).variables);
@@ -557,6 +551,11 @@ impl Vary for Series {
         }
     }
 
+    /// Strokes inside are known as their forces are: the steps of those suffice.
+    fn vary_errors(&self, _: &Step, state: &mut StateRef, _: &StepVariation, own: &mut VariationRef, _: TakeError) {
+        self.pass_by(state, own);
+    }
+
     fn vary_powers(
         &self,
         step: &Step,
@@ -565,7 +564,7 @@ impl Vary for Series {
         own: &mut VariationRef,
         sum: &mut PowersVariation,
     ) {
-        let mut share = own.take(number_count(self), self.size());
+        let mut share = own.take(self.number_count(), self.size());
         let count = share.count;
         let looked = self.look(step, state, (told, AtNodes::AsTold), None, share);
         let Looked { asked, solved, changes, clock } = &looked;
@@ -599,7 +598,7 @@ impl Vary for Series {
     /// What is singular inside is no share of the force of its own.
     fn vary_singular(&self, _: &Step, state: &mut StateRef, _: &StepVariation, own: &mut VariationRef, _: &mut [f64]) {
         self.pass(state);
-        own.take(number_count(self), self.size());
+        own.take(self.number_count(), self.size());
     }
 
     fn vary_singularity(
@@ -611,7 +610,7 @@ impl Vary for Series {
         _: [&mut [f64]; 3],
     ) {
         self.pass(state);
-        own.take(number_count(self), self.size());
+        own.take(self.number_count(), self.size());
     }
 
     fn vary_at(
@@ -622,7 +621,7 @@ impl Vary for Series {
         own: &mut VariationRef,
         sum: &mut ObservationVariation,
     ) {
-        let share = own.take(number_count(self), self.size());
+        let share = own.take(self.number_count(), self.size());
         let within = match (when, &told.step) {
             (When::Within(step, theta), Some(around)) => Some((step, theta, around)),
             _ => None,

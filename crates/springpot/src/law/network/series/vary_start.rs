@@ -1,11 +1,11 @@
 //! What parameters change of the strokes of the parts at t = 0.
 
 use super::start::shares;
-use super::vary::number_count;
 use super::{Derivative, Play, Series};
 use crate::fractional::Memory;
 use crate::law::leaf::When;
 use crate::law::network::part::{Onset, Part};
+use crate::law::network::vary::Vary;
 use crate::law::state::StateRef;
 use crate::law::step::Point;
 use crate::law::variation::{ObservationVariation, PointVariation, VariationMut};
@@ -14,7 +14,7 @@ use crate::law::variation::{ObservationVariation, PointVariation, VariationMut};
 /// does.
 pub(super) fn begin(series: &Series, at: &Point, state: &mut StateRef, told: &PointVariation, own: &mut VariationMut) {
     let parts = &series.parts;
-    let mut share = own.take(number_count(series), series.size());
+    let mut share = own.take(series.number_count(), series.size());
     let (of_strokes, count) = (share.take(0, series.own_size()), share.count);
     state.take_ready();
     let (strokes, _) = series.own(state);
@@ -23,7 +23,7 @@ pub(super) fn begin(series: &Series, at: &Point, state: &mut StateRef, told: &Po
     for part in parts {
         states.push(*state);
         part.ask().pass(state);
-        each.push(share.take(number_count(part.ask()), part.ask().size()));
+        each.push(share.take(part.ask().number_count(), part.ask().size()));
     }
     let slack = series.play().filter(|play| play.force(play.stroke(|k| strokes[k])) == 0.0);
     // What a play that is slack leaves to the others; where that is nothing it takes all.
