@@ -63,6 +63,9 @@ pub fn rnea_derivatives_into<T: Scalar>(
     }
     motions(model, kinematics, Some(&a[..n]), workspace);
     let (ws, degrees) = (&mut *workspace, model.degrees());
+    for (both, (rate, own)) in ws.axes.both_rates.iter_mut().zip(ws.axes.rate.iter().zip(&ws.axes.own_rate)) {
+        *both = *rate + *own;
+    }
     let two = T::from_f64(2.0);
     for j in (0..model.joint_count()).rev() {
         let (inertia, moving, load) = (ws.composite[j], ws.body_coriolis[j], ws.force[j + 1]);
@@ -70,8 +73,7 @@ pub fn rnea_derivatives_into<T: Scalar>(
             let own = ws.axes.unit[k];
             let at_rest = inertia * ws.axes.second_rate[k] + moving.times(ws.axes.rate[k].angular) * two;
             let by_position = at_rest + own.cross_force(load);
-            let own_rate = ws.axes.rate[k] + ws.axes.own_rate[k];
-            let by_velocity = inertia * own_rate + moving.times(own.angular) * two;
+            let by_velocity = inertia * ws.axes.both_rates[k] + moving.times(own.angular) * two;
             let momentum = inertia * own;
             let swaying = moving.transposed_times(own) * two;
             let column = degrees[k].index;
@@ -92,8 +94,7 @@ pub fn rnea_derivatives_into<T: Scalar>(
                 d_a[lower] += coupling;
                 // The outer joint feels that the inner one moves.
                 d_q[lower] += ws.axes.second_rate[c].dot(momentum) + ws.axes.rate[c].angular.dot(swaying);
-                let carrier_rate = ws.axes.rate[c] + ws.axes.own_rate[c];
-                d_v[lower] += carrier_rate.dot(momentum) + carrier.angular.dot(swaying);
+                d_v[lower] += ws.axes.both_rates[c].dot(momentum) + carrier.angular.dot(swaying);
             }
         }
         let parent = model.parent_link(j);

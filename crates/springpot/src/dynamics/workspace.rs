@@ -52,6 +52,8 @@ pub(super) struct Axes<T> {
     pub(super) unit: Vec<Motion<T>>,
     pub(super) rate: Vec<Motion<T>>,
     pub(super) own_rate: Vec<Motion<T>>,
+    /// The sum of both, which the derivatives take once for each degree that carries another.
+    pub(super) both_rates: Vec<Motion<T>>,
     pub(super) second_rate: Vec<Motion<T>>,
 }
 
@@ -70,7 +72,7 @@ impl<T: Scalar> Articulated<T> {
 impl<T: Scalar> Axes<T> {
     fn new(degrees: usize) -> Self {
         let zero = || vec![Motion::ZERO; degrees];
-        Self { unit: zero(), rate: zero(), own_rate: zero(), second_rate: zero() }
+        Self { unit: zero(), rate: zero(), own_rate: zero(), both_rates: zero(), second_rate: zero() }
     }
 }
 
