@@ -326,7 +326,8 @@ impl Cases {
         };
         let first = self.first_tag(self.axes.len());
         let read = sensitivity::mark(&ctx, &mut document, asked, first).and_then(|()| {
-            let plan = read_plan(&ctx, &document)?;
+            let mut plan = read_plan(&ctx, &document)?;
+            plan.output.tells_joint_losses = self.tell_joint_losses || has_joint_losses(&plan);
             let root = Table::of(&ctx, &document, "the scenario", &SCENARIO)?;
             let sensitivity = sensitivity::judge(&root, &plan, asked, first)?;
             Ok(Plan { sensitivity: Some(sensitivity), ..plan })

@@ -247,11 +247,12 @@ fn columns(root: &Table<'_>, plan: &Plan, asked: &Asked, parameters: &[Parameter
     };
     let all = plan.columns();
     let written = read_columns(root)?;
-    let by_name = |observables: &Observables| -> HashMap<String, Quantity> {
+    let by_name = |observables: Observables| -> HashMap<String, Quantity> {
+        let observables = if plan.output.tells_joint_losses { observables.with_joint_losses() } else { observables };
         let quantities = observables.quantities().into_iter();
         quantities.map(|quantity| (observables.named(quantity).to_string(), quantity)).collect()
     };
-    let [acting, described] = [plan.acting_observables(), plan.observables()].each_ref().map(by_name);
+    let [acting, described] = [plan.acting_observables(), plan.observables()].map(by_name);
     let globs = asked.of.as_deref().or(written.as_deref());
     for glob in asked.of.iter().flatten() {
         if !all.iter().any(|column| matches(&glob.text, &column.name)) {

@@ -40,7 +40,17 @@ memory_rtol = 1e-12
 
 #[test]
 fn joints_stick_and_slip() {
-    let columns = ["q.q1", "q.q2", "v.q1", "v.q2", "rod.force", "coupling.force"];
+    let columns = [
+        "q.q1",
+        "q.q2",
+        "v.q1",
+        "v.q2",
+        "rod.force",
+        "coupling.force",
+        "rod.dissipated",
+        "energy.joints",
+        "energy.actuators",
+    ];
     let paths = [
         ("element.rod.k", 0.2),
         ("element.rod.alpha", 4e-3),
@@ -124,7 +134,8 @@ action = { set = { "damper.u" = 2 } }
 [motion]
 "#;
 
-const COLUMNS: [&str; 7] = ["q.q1", "q.q2", "v.q1", "v.q2", "strut.force", "damper.force", "tau.q1"];
+const COLUMNS: [&str; 9] =
+    ["q.q1", "q.q2", "v.q1", "v.q2", "strut.force", "damper.force", "tau.q1", "damper.dissipated", "energy.joints"];
 
 #[test]
 fn ends_of_joints_push_and_let_go() {
@@ -161,8 +172,10 @@ fn events_set_torques_and_inputs() {
         ("constants.last", 1e-3),
     ];
     // Of the times of events the runs that are compared know no more.
-    compare_within(3e-7, &text, &COLUMNS, &paths);
-    compare_within(1e-6, &text, &COLUMNS, &[("constants.share", 1e-3)]);
+    // The last row lies in the step behind a hit, where the balance itself has no more digits.
+    let columns = &COLUMNS[..8];
+    compare_within(3e-7, &text, columns, &paths);
+    compare_within(1e-6, &text, columns, &[("constants.share", 1e-3)]);
 }
 
 #[test]
@@ -176,5 +189,5 @@ fn torques_that_events_set_follow_from_nothing_else() {
         ("event.low.action.set.\"tau.q1\"", 5e-3),
         ("constants.height", 2e-3),
     ];
-    compare_within(3e-7, &text, &COLUMNS, &paths);
+    compare_within(3e-7, &text, &COLUMNS[..8], &paths);
 }

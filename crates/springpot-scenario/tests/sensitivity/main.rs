@@ -81,8 +81,20 @@ rtol = 1e-10
 memory_rtol = 1e-12
 "#;
 
-const COLUMNS: [&str; 9] =
-    ["q.q1", "q.q2", "q.q3", "v.q2", "strut.force", "tendon.length", "mount.rx.force", "slide.force", "gripper.y"];
+const COLUMNS: [&str; 12] = [
+    "q.q1",
+    "q.q2",
+    "q.q3",
+    "v.q2",
+    "strut.force",
+    "tendon.length",
+    "mount.rx.force",
+    "slide.force",
+    "gripper.y",
+    "strut.dissipated",
+    "energy.joints",
+    "energy.actuators",
+];
 
 const COLUMNS_OF_SLIDER: [&str; 4] = ["q.q1", "v.q1", "strut.force", "strut.stored"];
 

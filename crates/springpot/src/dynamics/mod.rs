@@ -43,6 +43,7 @@ pub use crba::{crba, crba_into};
 pub use definite::{indefinite_joint, indefinite_joint_into};
 pub use energy::{kinetic_energy, potential_energy};
 pub(crate) use forces::coordinate::{add_force, add_stiffness, gradient_into, hessian_into};
+pub(crate) use forces::pair::pair_hessian_of_moving;
 pub use forces::pair::{
     CoincidentAnchors, Pair, PairForce, add_generalized_force, pair, pair_hessian, pair_hessian_into, pair_into,
 };
@@ -55,7 +56,8 @@ pub use jacobian::{
     point_jacobian_into, point_jacobian_rate, point_jacobian_rate_into,
 };
 pub use kinematics::Kinematics;
-pub(crate) use regressor::{add_gravity_effort, add_inertia_effort};
+pub(crate) use regressor::{add_gravity_effort, add_inertia_efforts};
 pub use rnea::{nonlinear_effects, nonlinear_effects_into, rnea, rnea_at_into, rnea_into};
+pub(crate) use rnea_derivatives::rnea_derivatives_of_moving;
 pub use rnea_derivatives::{RneaDerivatives, rnea_derivatives, rnea_derivatives_into};
 pub use workspace::Workspace;

@@ -50,10 +50,16 @@ pub(super) fn motions<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, a: O
                 ws.axes.own_rate[k] = velocity.cross(ws.axes.unit[k]);
             }
         }
+        (ws.velocity[j + 1], ws.acceleration[j + 1]) = (velocity, acceleration);
+        if *model.link_inertia(j) == Inertia::ZERO {
+            // A place: it carries others.
+            (ws.force[j + 1], ws.body_coriolis[j], ws.composite[j]) = (Force::ZERO, BodyCoriolis::ZERO, Inertia::ZERO);
+            continue;
+        }
         let inertia = Inertia::from_f64(model.link_inertia(j)).rotated(&link.rotation).shifted(arm);
         let momentum = inertia * velocity;
         ws.force[j + 1] = inertia * acceleration + velocity.cross_force(momentum);
         ws.body_coriolis[j] = BodyCoriolis::new(&inertia, velocity, momentum);
-        (ws.composite[j], ws.velocity[j + 1], ws.acceleration[j + 1]) = (inertia, velocity, acceleration);
+        ws.composite[j] = inertia;
     }
 }

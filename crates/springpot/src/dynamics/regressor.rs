@@ -5,29 +5,56 @@ use super::kinematics::Kinematics;
 use super::moments::reference;
 use super::workspace::Workspace;
 use crate::model::Model;
-use crate::spatial::{Force, Inertia, Motion, Vec3};
+use crate::spatial::{Inertia, Motion, Vec3};
 
-/// Adds what the link of `joint` with the inertia `change` in place of its own asks of the joints, ∂τ/∂I · ΔI, N·m or N, by the index of
-/// each velocity: linear in `change`, without gravity where that is 0.
+/// Adds what the link of `joint` with each of these inertias in place of its own asks of the joints, ∂τ/∂I · ΔI, N·m or N, by the index of each
+/// velocity that is `wanted` and the number of the change: linear in the changes, without gravity where that is 0.
 ///
-/// `workspace` is that of [`rnea_derivatives_into`](super::rnea_derivatives_into), which was called last with it, in the same state: with v and
-/// a of the link (less gravity) there, the force ΔI a + v ×* ΔI v goes to all that carry it.
-pub(crate) fn add_inertia_effort(
+/// `workspace` is that of [`rnea_derivatives_into`](super::rnea_derivatives_into), which was called last with it, in the same state. With the velocity
+/// (ω, v) and the acceleration (α, a) of the link (less gravity) in its own frame, in which ΔI stands still, and d = a + ω × v, a link of mass m,
+/// first moment h and rotational inertia J asks for the force m d + α × h + ω × (ω × h) and the moment h × d + J α + ω × J ω; along the unit motion
+/// (e, u) of a degree that carries it, that is m y + h·y_h + Σ J_ik (y_J)_ik with y of the motion alone (C. G. Atkeson, C. H. An & J. M. Hollerbach 1986).
+pub(crate) fn add_inertia_efforts<'i>(
     model: &Model,
     kinematics: &Kinematics,
     workspace: &Workspace,
     joint: usize,
-    change: &Inertia,
-    mut add: impl FnMut(usize, f64),
+    changes: impl Iterator<Item = &'i Inertia> + Clone,
+    wanted: impl Fn(usize) -> bool,
+    mut add: impl FnMut(usize, usize, f64),
 ) {
     let link = kinematics.link(joint + 1);
-    let inertia = change.rotated(&link.rotation).shifted(link.translation - reference(kinematics));
-    let (velocity, acceleration) = (workspace.velocity[joint + 1], workspace.acceleration[joint + 1]);
-    let force = inertia * acceleration + velocity.cross_force(inertia * velocity);
-    carry(model, workspace, joint, force, &mut add);
+    let arm = link.translation - reference(kinematics);
+    let inside = |motion: Motion| {
+        let there = motion.shifted(arm);
+        let [angular, linear] = [there.angular, there.linear].map(|vector| link.rotation.unrotate(vector));
+        Motion { angular, linear }
+    };
+    let Some(last) = model.degrees_of(joint).last() else { return };
+    let [velocity, acceleration] = [workspace.velocity[joint + 1], workspace.acceleration[joint + 1]].map(inside);
+    let (omega, alpha) = (velocity.angular, acceleration.angular);
+    let d = acceleration.linear + omega.cross(velocity.linear);
+    for k in [last].into_iter().chain(joint::carriers(model, last)) {
+        let index = model.degrees()[k].index;
+        if !wanted(index) {
+            continue;
+        }
+        let Motion { angular: e, linear: u } = inside(workspace.axes.unit[k]);
+        let (of_mass, of_moment) = (u.dot(d), u.cross(alpha) + omega.cross(omega.cross(u)) + d.cross(e));
+        let (Vec3([ex, ey, ez]), Vec3([ax, ay, az])) = (e, alpha);
+        let (Vec3([wx, wy, wz]), Vec3([ox, oy, oz])) = (e.cross(omega), omega);
+        let [xx, yy, zz] = [ex * ax + wx * ox, ey * ay + wy * oy, ez * az + wz * oz];
+        let xy = ex * ay + ey * ax + wx * oy + wy * ox;
+        let xz = ex * az + ez * ax + wx * oz + wz * ox;
+        let yz = ey * az + ez * ay + wy * oz + wz * oy;
+        for (which, Inertia { mass, first_moment, rotational: j }) in changes.clone().enumerate() {
+            let turned = j.xx * xx + j.yy * yy + j.zz * zz + j.xy * xy + j.xz * xz + j.yz * yz;
+            add(index, which, mass * of_mass + first_moment.dot(of_moment) + turned);
+        }
+    }
 }
 
-/// Adds what a field of gravity that changes by `change`, m/s², world axes, asks of the joints, as [`add_inertia_effort`] does.
+/// Adds what a field of gravity that changes by `change`, m/s², world axes, asks of the joints, as [`add_inertia_efforts`] does.
 pub(crate) fn add_gravity_effort(
     model: &Model,
     workspace: &Workspace,
@@ -41,14 +68,6 @@ pub(crate) fn add_gravity_effort(
         for k in model.degrees_of(joint) {
             add(model.degrees()[k].index, workspace.axes.unit[k].dot(force));
         }
-    }
-}
-
-/// Hands a force on the link of `joint` to its own degrees and to those that carry it.
-fn carry(model: &Model, workspace: &Workspace, joint: usize, force: Force, add: &mut impl FnMut(usize, f64)) {
-    let Some(last) = model.degrees_of(joint).last() else { return };
-    for k in [last].into_iter().chain(joint::carriers(model, last)) {
-        add(model.degrees()[k].index, workspace.axes.unit[k].dot(force));
     }
 }
 
@@ -113,8 +132,9 @@ mod tests {
             let moved = model.with_inertias(&changes, &vec![0.0; model.joint_count()]);
             let expected = rnea(&moved, &q, &v, &a, &[]);
             let mut found = vec![0.0; n];
-            let link = moved.link_inertia(joint);
-            add_inertia_effort(&model, &kinematics, &workspace, joint, link, |k, value| found[k] += value);
+            let links = [Inertia::ZERO, *moved.link_inertia(joint)];
+            let add = |k: usize, which: usize, value: f64| found[k] += which as f64 * value;
+            add_inertia_efforts(&model, &kinematics, &workspace, joint, links.iter(), |_| true, add);
             for (found, expected) in found.iter().zip(&expected) {
                 assert!((found - expected).abs() < 1e-12, "{joint}: {found} {expected}");
             }

@@ -52,6 +52,35 @@ pub fn rnea_derivatives_into<T: Scalar>(
     workspace: &mut Workspace<T>,
     derivatives: &mut RneaDerivatives<T>,
 ) {
+    differentiate(model, kinematics, a, workspace, derivatives, |_| true);
+    let RneaDerivatives { d_q, d_v, .. } = derivatives;
+    for pair in pairs {
+        add_pair_stiffness(model, kinematics, pair, workspace, d_q, d_v);
+    }
+}
+
+/// [`rnea_derivatives_into`] without pairs of a robot of which joints stand still but where `moves` says so, velocity by velocity: for others than these
+/// no more than what ∂τ/∂q of those that move has in their columns; what is not asked for is 0.
+pub(crate) fn rnea_derivatives_of_moving(
+    model: &Model,
+    kinematics: &Kinematics,
+    a: &[f64],
+    moves: &[bool],
+    workspace: &mut Workspace,
+    derivatives: &mut RneaDerivatives,
+) {
+    differentiate(model, kinematics, a, workspace, derivatives, |velocity| moves[velocity]);
+}
+
+#[inline]
+fn differentiate<T: Scalar>(
+    model: &Model,
+    kinematics: &Kinematics<T>,
+    a: &[T],
+    workspace: &mut Workspace<T>,
+    derivatives: &mut RneaDerivatives<T>,
+    moves: impl Fn(usize) -> bool,
+) {
     let n = model.nv();
     let RneaDerivatives { d_q, d_v, d_a } = derivatives;
     let (d_q, d_v, d_a) = (&mut d_q[..n * n], &mut d_v[..n * n], &mut d_a[..n * n]);
@@ -73,10 +102,18 @@ pub fn rnea_derivatives_into<T: Scalar>(
             let own = ws.axes.unit[k];
             let at_rest = inertia * ws.axes.second_rate[k] + moving.times(ws.axes.rate[k].angular) * two;
             let by_position = at_rest + own.cross_force(load);
+            let column = degrees[k].index;
+            // Degrees of one joint move with one another.
+            let turned = |c: usize| if degrees[c].link == j + 1 { at_rest } else { by_position };
+            if !moves(column) {
+                for c in joint::carriers(model, k).filter(|c| moves(degrees[*c].index)) {
+                    d_q[degrees[c].index * n + column] += ws.axes.unit[c].dot(turned(c));
+                }
+                continue;
+            }
             let by_velocity = inertia * ws.axes.both_rates[k] + moving.times(own.angular) * two;
             let momentum = inertia * own;
             let swaying = moving.transposed_times(own) * two;
-            let column = degrees[k].index;
             let diagonal = column * n + column;
             d_q[diagonal] += own.dot(at_rest);
             d_v[diagonal] += own.dot(by_velocity);
@@ -84,16 +121,17 @@ pub fn rnea_derivatives_into<T: Scalar>(
             for c in joint::carriers(model, k) {
                 let row = degrees[c].index;
                 let (upper, lower) = (row * n + column, column * n + row);
+                // The outer joint feels that the inner one moves.
+                d_q[lower] += ws.axes.second_rate[c].dot(momentum) + ws.axes.rate[c].angular.dot(swaying);
+                if !moves(row) {
+                    continue;
+                }
                 let carrier = ws.axes.unit[c];
-                // Degrees of one joint move with one another.
-                let turned = if degrees[c].link == j + 1 { at_rest } else { by_position };
-                d_q[upper] += carrier.dot(turned);
+                d_q[upper] += carrier.dot(turned(c));
                 d_v[upper] += carrier.dot(by_velocity);
                 let coupling = carrier.dot(momentum);
                 d_a[upper] += coupling;
                 d_a[lower] += coupling;
-                // The outer joint feels that the inner one moves.
-                d_q[lower] += ws.axes.second_rate[c].dot(momentum) + ws.axes.rate[c].angular.dot(swaying);
                 d_v[lower] += ws.axes.both_rates[c].dot(momentum) + carrier.angular.dot(swaying);
             }
         }
@@ -106,9 +144,6 @@ pub fn rnea_derivatives_into<T: Scalar>(
     }
     for (k, &rotor) in model.felt_rotors().iter().enumerate() {
         d_a[k * n + k] += T::from_f64(rotor);
-    }
-    for pair in pairs {
-        add_pair_stiffness(model, kinematics, pair, workspace, d_q, d_v);
     }
 }
 

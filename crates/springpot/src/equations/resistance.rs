@@ -60,6 +60,19 @@ pub(crate) fn joint_loss(system: &System, v: &[f64]) -> f64 {
     resisting(&system.model, v).map(|joint| joint.resistance() * joint.speed).sum()
 }
 
+/// Hands over what the power that damping and friction take changes by with each velocity: its index and the slope, W/(m/s) or W/(rad/s).
+pub(super) fn each_loss_slope(system: &System, v: &[f64], mut take: impl FnMut(usize, f64)) {
+    for joint in resisting(&system.model, v) {
+        let own = match joint.law {
+            FrictionLaw::Smooth { speed: width } => {
+                joint.damping + joint.friction * (1.0 - (joint.speed / width).tanh().powi(2)) / width
+            }
+            FrictionLaw::Sticking => joint.damping,
+        };
+        take(joint.index, joint.ratio * (joint.resistance() + joint.speed * own));
+    }
+}
+
 /// [`add_resistance`] without the friction that sticks.
 pub(crate) fn add_smooth_resistance(system: &System, v: &[f64], tau: &mut [f64]) {
     for Resisting { index, ratio, speed, damping, friction, law } in resisting(&system.model, v) {

@@ -1,10 +1,12 @@
 //! What parameters change at the nodes of a step: the equations of motion linearised there, and their right sides.
 
 mod control;
+mod energies;
 mod inertias;
 mod rows;
 mod saltation;
 mod singular;
+mod sizes;
 mod state;
 
 use super::assembly::Equations;
@@ -13,16 +15,20 @@ use super::node::Node;
 use super::resistance::add_tangents;
 use super::solve::Solve;
 use crate::collocation::STAGES;
-use crate::dynamics::{Kinematics, RneaDerivatives, Workspace, add_gravity_effort, add_inertia_effort};
-use crate::elements::{Forces, Pull, Reading};
-use crate::law::variation::{LawVariation, ObservationVariation, PointVariation, StepVariation, VariationError};
+use crate::dynamics::{
+    Kinematics, RneaDerivatives, Workspace, add_gravity_effort, add_inertia_efforts, rnea_derivatives_of_moving,
+};
+use crate::elements::Reading;
+use crate::law::variation::{LawVariation, ObservationVariation, PointVariation, StepVariation};
 use crate::law::{Derivative, Network, Response};
 use crate::model::{FrictionLaw, Model};
 use crate::sensitivity::{Seed, Sensitivity, SensitivityError};
 use crate::system::{Motion, System};
+use energies::Works;
 use inertias::Inertias;
 use saltation::Saltation;
 use singular::Singular;
+pub(crate) use sizes::{StepErrors, TANGENTS};
 pub(crate) use state::VariationState;
 use std::ops::Range;
 use std::sync::Arc;
@@ -35,6 +41,8 @@ pub(crate) struct Variation {
     /// Of every coordinate and velocity of the run, which of the extended robot it is.
     own_q: Vec<usize>,
     pub(super) own_v: Vec<usize>,
+    /// Whether each velocity of the extended robot is one of the run; the others stand for places and stay 0.
+    moves: Vec<bool>,
     /// Coordinates of the extended robot.
     q: Vec<f64>,
     pub(crate) elements: Vec<ElementVariation>,
@@ -47,29 +55,22 @@ pub(crate) struct Variation {
     sizes: [Vec<f64>; 2],
     /// How large the inner variables of every element have.
     hidden: Vec<Vec<f64>>,
+    /// [`Self::expected`].
+    expected: Vec<f64>,
     singular: Singular,
-    forces: Forces,
     workspace: Workspace,
     pub(crate) solve: Solve,
     /// Right-hand sides of a step, side by side.
     pub(crate) right: Vec<f64>,
     /// Of a change that is about to be crossed, and of those before.
     saltation: Saltation,
+    works: Works,
     /// Of what follows from the state, where anything does.
     control: Option<Box<ControlVariation>>,
 }
 
-/// Share of what the motion comes to that a change by the whole of a parameter is expected to come to at least.
-const BEGUN: f64 = 1e-3;
-
-/// Share of the largest change below which that of one velocity counts as so large.
-const BESIDE: f64 = 1e-4;
-
 /// Change of the forces, in units of the largest, at which they are found.
 const SETTLED: f64 = 1e-12;
-
-/// What changes may err in a step, in units of what the motion may: so they come to the accuracy that the motion comes to in its own steps.
-pub(crate) const TANGENTS: f64 = 4.0;
 
 /// The node of a row.
 pub(crate) const ROW: usize = STAGES + 1;
@@ -89,6 +90,8 @@ pub(crate) struct ElementVariation {
     pub(crate) force: Vec<f64>,
     /// Force, stored energy and D^alpha x at the row.
     row: [Vec<f64>; 3],
+    /// What the law tells of itself there.
+    told: Vec<f64>,
 }
 
 /// One node.
@@ -180,6 +183,7 @@ impl Variation {
                 inputs: [inputs(), inputs()],
                 force: vec![0.0; STAGES * count],
                 row: [(); 3].map(|()| vec![0.0; count]),
+                told: Vec::new(),
             }
         };
         let seeds = by.parameters.iter().enumerate().flat_map(|(p, own)| own.seeds.iter().map(move |seed| (p, seed)));
@@ -189,9 +193,11 @@ impl Variation {
         });
         let placed = placed.collect();
         let elements = extended.elements.iter().map(|element| element.inputs.len()).enumerate().map(element).collect();
+        let moves = (0..model.nv()).map(|k| own_v.contains(&k)).collect();
         Ok(Self {
             own_q,
             own_v,
+            moves,
             q: start.clone(),
             elements,
             placed,
@@ -199,79 +205,17 @@ impl Variation {
             nodes: std::array::from_fn(|_| node()),
             sizes: [zeros(), zeros()],
             hidden: vec![Vec::new(); extended.elements.len()],
+            expected: Self::expected(by.parameters.iter().map(|parameter| parameter.typical)),
             singular: Singular::new(extended.elements.len(), model.nv(), count),
-            forces: Forces::default(),
             workspace: Workspace::new(model),
             solve: Solve::default(),
             right: Vec::new(),
             saltation: Saltation::new(count),
+            works: Works::new(by, extended.elements.len()),
             by: by.clone(),
             system: extended.clone(),
             control,
         })
-    }
-
-    /// Whether its errors share in the choice of steps.
-    pub(crate) fn shares_in_steps(&self) -> bool {
-        self.by.control
-    }
-
-    /// How large q and v of velocity `row` have changed by parameter `p`, those at the end of the step at hand among them. What hardly changes
-    /// beside the others is measured by them, and what begins like no power of t, alike on every scale of it, by the travel and the speed of the
-    /// motion itself, `moved`.
-    pub(crate) fn size(&self, row: usize, p: usize, largest: [f64; 2], moved: [f64; 2]) -> [f64; 2] {
-        let typical = self.by.parameters[p].typical.abs();
-        let expected = |size: f64| if typical > 0.0 { BEGUN * size / typical } else { 0.0 };
-        let [q, v] = self.sized(row, p);
-        let ([most_q, most_v], [travel, speed]) = (largest.map(|size| BESIDE * size), moved.map(expected));
-        [q.max(most_q).max(travel).max(self.jump_travel(row, p)), v.max(most_v).max(speed)]
-    }
-
-    /// How large q and v of any velocity have changed by parameter `p`.
-    pub(crate) fn largest(&self, p: usize) -> [f64; 2] {
-        let own = self.own_v.iter().map(|&k| self.sized(k, p));
-        own.fold([0.0; 2], |[q, v]: [f64; 2], [own_q, own_v]| [q.max(own_q), v.max(own_v)])
-    }
-
-    fn sized(&self, row: usize, p: usize) -> [f64; 2] {
-        let (at, last, [q, v]) = (row * self.count() + p, &self.nodes[STAGES], &self.sizes);
-        [q[at].max(last.q[at].abs()), v[at].max(last.v[at].abs())]
-    }
-
-    /// The estimate of the step's error of what changes of the inner variables of laws, the worst one in units of its tolerance, `rtol` of its size.
-    pub(crate) fn hidden_error(&self, equations: &Equations, rtol: f64) -> f64 {
-        let (mut worst, count) = (0.0f64, self.count());
-        for ((e, element), sizes) in self.elements.iter().enumerate().zip(&self.hidden) {
-            if element.law.variables().is_empty() {
-                continue;
-            }
-            let told = of_step(count, [&element.stroke, &element.rate], &element.inputs);
-            equations.bank.vary_errors(e, &told, &element.law, &mut |variable, own| {
-                let VariationError { parameter: p, error, change, coming, size } = own;
-                if error == 0.0 || !self.knows(p) {
-                    return;
-                }
-                let typical = self.by.parameters[p].typical.abs();
-                let expected = if typical > 0.0 { BEGUN * size / typical } else { 0.0 };
-                let so_far = sizes.get(variable * count + p).copied().unwrap_or(0.0);
-                let share = error / (rtol * so_far.max(change).max(coming).max(expected));
-                worst = if share.is_nan() { f64::INFINITY } else { worst.max(share) };
-            });
-        }
-        worst
-    }
-
-    /// Takes in how large the changes where the next step starts are.
-    fn take_sizes(&mut self) {
-        for (element, sizes) in self.elements.iter().zip(&mut self.hidden) {
-            let now = element.law.variables();
-            sizes.resize(now.len(), 0.0);
-            sizes.iter_mut().zip(now).for_each(|(size, now)| *size = size.max(now.abs()));
-        }
-        let Self { nodes: [start, ..], sizes: [q, v], .. } = self;
-        for (sizes, now) in [(q, &start.q), (v, &start.v)] {
-            sizes.iter_mut().zip(now).for_each(|(size, now)| *size = size.max(now.abs()));
-        }
     }
 
     /// Number of parameters.
@@ -306,6 +250,7 @@ impl Variation {
                 }
             }
         }
+        self.place_nodes();
         self.hold_still(equations);
         // What laws keep begins at the strokes and inputs of t = 0.
         self.see_start(equations, start);
@@ -346,8 +291,15 @@ impl Variation {
         }
         self.accelerate(equations);
         self.begin_singular(equations);
+        self.begin_works(equations);
         self.take_sizes();
         Ok(())
+    }
+
+    /// Tells all nodes what changes of places, once for all.
+    fn place_nodes(&mut self) {
+        let [start, others @ ..] = &mut self.nodes;
+        others.iter_mut().for_each(|node| node.q.copy_from_slice(&start.q));
     }
 
     /// Sees where the step starts, and what changes of the elements there.
@@ -370,13 +322,13 @@ impl Variation {
         }
         let mut solve = std::mem::take(&mut self.solve);
         if solve.factor_part(&node.slopes.d_a, n, &free) {
-            let mut spare = [vec![0.0; count], vec![0.0; count]];
+            let (mut spare, mut told) = ([vec![0.0; count], vec![0.0; count]], Vec::new());
             for (e, ElementVariation { law, stroke, rate, inputs, row: [force, ..], .. }) in
                 self.elements.iter_mut().enumerate()
             {
                 force.fill(0.0);
                 let [stored, derivative] = &mut spare;
-                let mut sum = ObservationVariation { force, stored, derivative };
+                let mut sum = ObservationVariation { force, stored, derivative, told: &mut told };
                 let told = at_start(count, [stroke, rate], inputs);
                 equations.bank.vary_now(e, &equations.bank.point(e, 0), &told, law, &mut sum);
             }
@@ -398,8 +350,8 @@ impl Variation {
 
     /// Looks at node `i` of the step, where the run is at `at`: what its elements measure, and their inputs.
     pub(crate) fn look(&mut self, i: usize, at: Node) {
-        let Self { by, system, own_q, own_v, q, nodes, elements, saltation: Saltation { held, .. }, workspace, .. } =
-            self;
+        let Self { by, system, own_q, own_v, moves, q, nodes, elements, saltation, workspace, .. } = self;
+        let Saltation { held, .. } = saltation;
         let (model, node, count) = (&system.model, &mut nodes[i], by.parameters.len());
         own_q.iter().zip(at.q).for_each(|(&k, value)| q[k] = *value);
         for (&k, (v, a)) in own_v.iter().zip(at.v.iter().zip(at.a)) {
@@ -414,9 +366,9 @@ impl Variation {
             let mut reading = Reading::default();
             element.measure.read_into(model, &node.kinematics, gradient, &mut reading);
             *told = [reading.coordinate, reading.rate];
-            element.measure.hessian_into(model, &node.kinematics, workspace, kept);
+            element.measure.hessian_of_moving(model, &node.kinematics, moves, workspace, kept);
             for (bend, line) in bend.iter_mut().zip(kept.chunks_exact(n)) {
-                *bend = line.iter().zip(&node.v_now).map(|(h, v)| h * v).sum();
+                *bend = own_v.iter().map(|&k| line[k] * node.v_now[k]).sum();
             }
         }
         for element in elements.iter_mut() {
@@ -450,17 +402,19 @@ impl Variation {
     /// Looks at node `i`, where the elements pull with `force`, and sees the slopes there, and what changes where the motion stays.
     pub(crate) fn see(&mut self, equations: &Equations, i: usize, at: Node, force: &[f64]) {
         self.look(i, at);
-        let Self { by, system, own_v, nodes, forces, workspace, saltation: Saltation { held, .. }, inertias, .. } =
-            self;
+        let Self { by, system, own_v, moves, nodes, workspace, saltation: Saltation { held, .. }, inertias, .. } = self;
         let (model, node, count) = (&system.model, &mut nodes[i], by.parameters.len());
-        forces.clear();
-        for (element, force) in system.elements.iter().zip(force) {
-            forces.push(&element.measure, Pull::constant(*force));
+        let (slopes, n) = (&mut node.slopes, model.nv());
+        rnea_derivatives_of_moving(model, &node.kinematics, &node.a_now, moves, workspace, slopes);
+        for (force, hessian) in force.iter().zip(&node.hessians).filter(|(force, _)| **force != 0.0) {
+            for &row in own_v.iter() {
+                let line = row * n..(row + 1) * n;
+                let bent = hessian[line.clone()].iter();
+                slopes.d_q[line].iter_mut().zip(bent).for_each(|(slope, bent)| *slope += force * bent);
+            }
         }
-        let slopes = &mut node.slopes;
-        forces.inverse_dynamics_derivatives_into(model, &node.kinematics, &node.a_now, workspace, slopes);
         add_tangents(system, &node.v_now, &mut slopes.d_v);
-        node.explicit.fill(0.0);
+        own_v.iter().for_each(|k| node.explicit[k * count..(k + 1) * count].fill(0.0));
         for (velocity, by) in held.drives() {
             let row = own_v[velocity] * count;
             node.explicit[row..row + count].iter_mut().zip(by).for_each(|(sum, by)| *sum -= by);
@@ -492,9 +446,10 @@ impl Variation {
         }
         let Inertias { links, rotors, fields } = inertias;
         let explicit = &mut node.explicit;
-        for (p, joint, change) in links {
-            let add = |k: usize, value: f64| explicit[k * count + *p] += value;
-            add_inertia_effort(model, &node.kinematics, workspace, *joint, change, add);
+        for (joint, changes) in links {
+            let add = |k: usize, which: usize, value: f64| explicit[k * count + changes[which].0] += value;
+            let inertias = changes.iter().map(|(_, inertia)| inertia);
+            add_inertia_efforts(model, &node.kinematics, workspace, *joint, inertias, |k| moves[k], add);
         }
         rotors.iter().for_each(|(p, k, rotor)| explicit[k * count + p] += rotor * node.a_now[*k]);
         for (p, change) in fields {
@@ -514,13 +469,16 @@ impl Variation {
         }
     }
 
-    /// The motion changes at node `i`, from 1, as where the step starts.
+    /// The motion changes at node `i`, from 1, as where the step starts; places change everywhere by the same.
     pub(crate) fn take_start(&mut self, i: usize) {
         let [start, others @ ..] = &mut self.nodes;
-        let node = &mut others[i - 1];
-        node.q.copy_from_slice(&start.q);
-        node.v.copy_from_slice(&start.v);
-        node.a.copy_from_slice(&start.a);
+        let (node, count) = (&mut others[i - 1], self.by.parameters.len());
+        for &k in &self.own_v {
+            let block = k * count..(k + 1) * count;
+            for (own, start) in [(&mut node.q, &start.q), (&mut node.v, &start.v), (&mut node.a, &start.a)] {
+                own[block.clone()].copy_from_slice(&start[block.clone()]);
+            }
+        }
     }
 
     /// What changes of stroke and rate of element `e` at node `i`.
@@ -585,6 +543,7 @@ impl Variation {
     /// Asks the laws what changes of their forces where strokes and rates at the nodes stay.
     pub(crate) fn ask(&mut self, equations: &Equations) {
         let count = self.count();
+        self.works.forget();
         for (e, ElementVariation { law, stroke, rate, inputs, force, .. }) in self.elements.iter_mut().enumerate() {
             let told = of_step(count, [stroke, rate], inputs);
             equations.bank.vary(e, &told, law, force);
@@ -622,6 +581,7 @@ impl Variation {
     /// Takes the accepted step into what changes of the laws' states; the bank has not taken it yet.
     pub(crate) fn commit(&mut self, equations: &Equations) {
         self.foresee(STAGES, equations);
+        self.commit_works(equations);
         let count = self.count();
         for (e, ElementVariation { law, stroke, rate, inputs, .. }) in self.elements.iter_mut().enumerate() {
             let told = of_step(count, [stroke, rate], inputs);

@@ -481,17 +481,22 @@ impl Network {
     /// What it tells of itself beside stroke, force and energies: of each of its leaves what none before it tells, and temperature and heat where it
     /// keeps a temperature.
     pub fn tells(&self) -> Vec<Told> {
-        let mut told: Vec<Told> = Vec::new();
-        let mut add = |own: &[Told]| {
-            for quantity in own {
-                if told.iter().all(|other| other.key != quantity.key) {
-                    told.push(*quantity);
-                }
-            }
-        };
-        self.ask().for_each_leaf(&mut |leaf| add(leaf.tells()));
+        let all = self.all_told();
+        self.places_of_told().into_iter().map(|place| all[place]).collect()
+    }
+
+    /// Of each of [`Self::tells`] its place among what all leaves tell.
+    pub(crate) fn places_of_told(&self) -> Vec<usize> {
+        let all = self.all_told();
+        (0..all.len()).filter(|&k| all[..k].iter().all(|earlier| earlier.key != all[k].key)).collect()
+    }
+
+    /// What all leaves tell, and temperature and heat behind them.
+    fn all_told(&self) -> Vec<Told> {
+        let mut told = Vec::new();
+        self.ask().for_each_leaf(&mut |leaf| told.extend(leaf.tells()));
         if self.is_thermal() {
-            add(&[Told::TEMPERATURE, Told::HEAT]);
+            told.extend([Told::TEMPERATURE, Told::HEAT]);
         }
         told
     }

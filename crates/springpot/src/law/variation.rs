@@ -47,6 +47,8 @@ pub struct ObservationVariation<'a> {
     pub stored: &'a mut [f64],
     /// Of D^alpha x of a law with one springpot, with that share.
     pub derivative: &'a mut [f64],
+    /// Of what leaves tell of themselves ([`super::Leaf::tells`]): a block for each number, appended leaf by leaf.
+    pub told: &'a mut Vec<f64>,
 }
 
 /// What parameters change of energy flows at the start and at the nodes of a step: s + 1 blocks of derivatives, to which every leaf adds its own.

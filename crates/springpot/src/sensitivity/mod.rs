@@ -273,9 +273,9 @@ pub enum SensitivityError {
 /// Whether derivatives of a quantity are known.
 pub fn has_derivative(quantity: Quantity) -> bool {
     use crate::observe::ElementQuantity::{
-        Derivative, Force, GeneralizedForce, InputValue, Length, Rate, Stored, Stroke,
+        Derivative, Dissipated, Force, GeneralizedForce, Input, InputValue, Leaf, Length, Rate, Stored, Stroke, Told,
     };
-    use crate::observe::EnergyQuantity::{Kinetic, Potential};
+    use crate::observe::EnergyQuantity::{Actuators, Joints, Kinetic, Potential, Residual};
     match quantity {
         Quantity::Time
         | Quantity::Coordinate(_)
@@ -284,10 +284,12 @@ pub fn has_derivative(quantity: Quantity) -> bool {
         | Quantity::Torque(_)
         | Quantity::Gripper(_)
         | Quantity::GripperError
-        | Quantity::Energy(Kinetic | Potential) => true,
-        Quantity::Element(_, of) => {
-            matches!(of, Length | Stroke | Rate | Derivative | Force | GeneralizedForce(_) | Stored | InputValue(_))
-        }
-        Quantity::Energy(_) | Quantity::Derivative(_) => false,
+        | Quantity::Energy(Kinetic | Potential | Actuators | Joints) => true,
+        Quantity::Element(_, of) => match of {
+            Length | Stroke | Rate | GeneralizedForce(_) | InputValue(_) | Told(_) => true,
+            Force | Derivative | Stored | Dissipated | Input => true,
+            Leaf(..) => false,
+        },
+        Quantity::Energy(Residual) | Quantity::Derivative(_) => false,
     }
 }

@@ -22,8 +22,8 @@ use crate::system::error::RunError;
 use crate::system::settings::Settings;
 use serde::{Deserialize, Serialize};
 
-/// What a temperature may move across a kink, in units of it: one bit of time further it is another one.
-const SAME_TEMPERATURE: f64 = 1e-9;
+/// What a temperature, or what is stored, may move across a kink, in units of it: one bit of time further it is another one.
+const SAME: f64 = 1e-9;
 
 /// Powers of the step that belong to no element.
 #[derive(Debug, Clone, Copy, Default)]
@@ -257,7 +257,7 @@ impl Recorder {
         {
             let [before, after] =
                 [&self.evaluations[0], &right].map(|of| element.law.temperature(&of.elements[e].inputs));
-            if (after - before).abs() > SAME_TEMPERATURE * before {
+            if (after - before).abs() > SAME * before {
                 return Err(RunError::heat_jump(right.t, &element.name, before, after));
             }
         }
@@ -272,6 +272,9 @@ impl Recorder {
             let stored = |at: &Point| self.equations.bank.now(e, at).and_then(|observation| observation.stored);
             if let Some((was, is)) = stored(&was).zip(stored(&is)) {
                 self.equations.bank.add_supplied(e, is - was);
+                if let Some(variation) = self.variation.as_mut().filter(|_| (is - was).abs() > SAME * was) {
+                    variation.lose_supplied(e);
+                }
             }
         }
         Ok(())

@@ -50,9 +50,15 @@ impl<T: Scalar> Coordinate<T> for CableLength<'_> {
         for two in self.0.windows(2) {
             let line = Line::new(model, kinematics, &two[0], &two[1]);
             line.fill_columns(model, kinematics, columns);
-            line.second_derivatives(model, kinematics, columns, |a, b, second| {
-                visit(degrees[a].index, degrees[b].index, second);
-            });
+            line.second_derivatives(
+                model,
+                kinematics,
+                columns,
+                |_, _| true,
+                |a, b, second| {
+                    visit(degrees[a].index, degrees[b].index, second);
+                },
+            );
         }
     }
 }

@@ -73,6 +73,7 @@ impl<'a, T: Scalar> Line<'a, T> {
         model: &Model,
         kinematics: &Kinematics<T>,
         columns: &[Vec3<T>],
+        wanted: impl Fn(usize, usize) -> bool,
         mut visit: impl FnMut(usize, usize, T),
     ) {
         let (degrees, u, inverse) = (model.degrees(), self.direction, T::ONE / self.length);
@@ -83,7 +84,7 @@ impl<'a, T: Scalar> Line<'a, T> {
         let turn = |k: usize| joint::angular_column(&degrees[k], kinematics.link(degrees[k].link));
         for site in [self.from, self.to] {
             for hi in joint::path_to(model, site.link(), self.common) {
-                for lo in joint::inwards(model, hi + 1, model.last_degree(self.common)) {
+                for lo in joint::inwards(model, hi + 1, model.last_degree(self.common)).filter(|lo| wanted(*lo, hi)) {
                     let both = stretched(lo, hi);
                     let turned = u.dot(turn(lo).cross(columns[hi]));
                     visit(hi, lo, both + turned);
@@ -98,7 +99,7 @@ impl<'a, T: Scalar> Line<'a, T> {
             }
         }
         for a in joint::path_to(model, self.from.link(), self.common) {
-            for b in joint::path_to(model, self.to.link(), self.common) {
+            for b in joint::path_to(model, self.to.link(), self.common).filter(|b| wanted(a, *b)) {
                 let both = stretched(a, b);
                 visit(a, b, both);
                 visit(b, a, both);

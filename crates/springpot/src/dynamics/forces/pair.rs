@@ -133,12 +133,25 @@ pub fn pair_hessian_into<T: Scalar>(
     workspace: &mut Workspace<T>,
     hessian: &mut [T],
 ) {
+    pair_hessian_of_moving(model, kinematics, [from, to], |_| true, workspace, hessian);
+}
+
+/// [`pair_hessian_into`] in the rows and columns of the velocities that move; what is not asked for is 0.
+pub(crate) fn pair_hessian_of_moving<T: Scalar>(
+    model: &Model,
+    kinematics: &Kinematics<T>,
+    [from, to]: [&Site; 2],
+    moves: impl Fn(usize) -> bool,
+    workspace: &mut Workspace<T>,
+    hessian: &mut [T],
+) {
     let (n, degrees) = (model.nv(), model.degrees());
     assert_eq!(hessian.len(), n * n, "the Hessian is nv x nv");
+    let wanted = |a: usize, b: usize| moves(degrees[a].index) || moves(degrees[b].index);
     hessian.fill(T::ZERO);
     let line = Line::new(model, kinematics, from, to);
     line.fill_columns(model, kinematics, &mut workspace.columns);
-    line.second_derivatives(model, kinematics, &workspace.columns, |a, b, entry| {
+    line.second_derivatives(model, kinematics, &workspace.columns, wanted, |a, b, entry| {
         hessian[degrees[a].index * n + degrees[b].index] += entry;
     });
 }

@@ -26,10 +26,16 @@ pub(in crate::dynamics) fn add_pair_stiffness<T: Scalar>(
     for k in line.degrees(model) {
         (gradient[k], rate_gradient[k]) = (line.direction.dot(columns[k]), T::ZERO);
     }
-    line.second_derivatives(model, kinematics, columns, |b, c, second| {
-        d_q[degrees[b].index * n + degrees[c].index] += force.force * second;
-        rate_gradient[c] += second * v[degrees[b].index];
-    });
+    line.second_derivatives(
+        model,
+        kinematics,
+        columns,
+        |_, _| true,
+        |b, c, second| {
+            d_q[degrees[b].index * n + degrees[c].index] += force.force * second;
+            rate_gradient[c] += second * v[degrees[b].index];
+        },
+    );
     for c in line.degrees(model) {
         let by_position = force.d_length * gradient[c] + force.d_rate * rate_gradient[c];
         let by_velocity = force.d_rate * gradient[c];

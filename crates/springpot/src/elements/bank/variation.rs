@@ -1,7 +1,9 @@
 //! What parameters change of the elements of a bank.
 
 use super::{Banked, ElementBank, Kept};
-use crate::law::variation::{LawVariation, ObservationVariation, PointVariation, StepVariation, TakeError};
+use crate::law::variation::{
+    LawVariation, ObservationVariation, PointVariation, PowersVariation, StepVariation, TakeError,
+};
 use crate::law::{Point, State, When};
 
 impl ElementBank {
@@ -15,6 +17,14 @@ impl ElementBank {
         let Banked { law, kept, told, .. } = &self.elements[e];
         if let Some(Kept { state, .. }) = kept {
             law.vary(&told.step(self.step), state, by, own, forces);
+        }
+    }
+
+    /// Adds what changes of the energy flows of element `e` at the start and at the nodes of the step; nothing of a law whose energies are unknown.
+    pub(crate) fn vary_powers(&self, e: usize, by: &StepVariation, own: &LawVariation, sum: &mut PowersVariation) {
+        let Banked { law, kept, told, .. } = &self.elements[e];
+        if let Some(Kept { state, .. }) = kept.as_ref().filter(|kept| kept.state.is_accounted()) {
+            law.vary_powers(&told.step(self.step), state, by, own, sum);
         }
     }
 

@@ -9,7 +9,9 @@ mod forces;
 mod joint;
 mod line;
 
-use crate::dynamics::{CoincidentAnchors, Kinematics, Pair, Workspace, hessian_into, pair_hessian_into};
+use crate::dynamics::{
+    CoincidentAnchors, Kinematics, Pair, Workspace, hessian_into, pair_hessian_into, pair_hessian_of_moving,
+};
 use crate::model::Model;
 use crate::spatial::Vec3;
 pub use bushing::{Bushing, Component};
@@ -117,6 +119,24 @@ impl Measure {
             Self::Joint(_) => hessian.fill(0.0),
             Self::Cable(cable) => hessian_into(model, kinematics, &cable.coordinate(), workspace, hessian),
             Self::Bushing(bushing) => hessian_into(model, kinematics, bushing.coordinate(), workspace, hessian),
+        }
+    }
+
+    /// [`Self::hessian_into`], of two points no more than the rows and columns of the velocities that move.
+    pub(crate) fn hessian_of_moving(
+        &self,
+        model: &Model,
+        kinematics: &Kinematics,
+        moves: &[bool],
+        workspace: &mut Workspace,
+        hessian: &mut [f64],
+    ) {
+        match self {
+            Self::Line(line) => {
+                let sites = [&line.from, &line.to];
+                pair_hessian_of_moving(model, kinematics, sites, |velocity| moves[velocity], workspace, hessian);
+            }
+            _ => self.hessian_into(model, kinematics, workspace, hessian),
         }
     }
 

@@ -3,10 +3,11 @@
 use crate::sensitivity::{Seed, Sensitivity};
 use crate::spatial::Inertia;
 
-/// What parameters change of inertias and gravity: parameter, joint or velocity of the extended robot, by how much.
+/// What parameters change of inertias and gravity: parameter, velocity of the extended robot, by how much.
 #[derive(Debug, Default)]
 pub(super) struct Inertias {
-    pub(super) links: Vec<(usize, usize, Inertia)>,
+    /// By joint of the extended robot, with parameter and change.
+    pub(super) links: Vec<(usize, Vec<(usize, Inertia)>)>,
     pub(super) rotors: Vec<(usize, usize, f64)>,
     pub(super) fields: Vec<(usize, [f64; 3])>,
 }
@@ -18,8 +19,13 @@ impl Inertias {
             for seed in &parameter.seeds {
                 match seed {
                     Seed::Inertia(change) => {
-                        let links = (0..change.joint_count()).map(|j| (p, j, *change.link_inertia(j)));
-                        own.links.extend(links.filter(|(_, _, inertia)| *inertia != Inertia::ZERO));
+                        let links = (0..change.joint_count()).map(|j| (j, *change.link_inertia(j)));
+                        for (joint, inertia) in links.filter(|(_, inertia)| *inertia != Inertia::ZERO) {
+                            match own.links.iter_mut().find(|(other, _)| *other == joint) {
+                                Some((_, changes)) => changes.push((p, inertia)),
+                                None => own.links.push((joint, vec![(p, inertia)])),
+                            }
+                        }
                         let rotors = change.felt_rotors().iter().enumerate().map(|(k, rotor)| (p, k, *rotor));
                         own.rotors.extend(rotors.filter(|(_, _, rotor)| *rotor != 0.0));
                     }

@@ -1,7 +1,7 @@
 //! What parameters change of what rows tell.
 
 use super::{ElementVariation, ROW, Variation, of_step};
-use crate::dynamics::{coriolis, gravity, kinetic_energy, point_jacobian, potential_energy};
+use crate::dynamics::point_jacobian;
 use crate::equations::assembly::Equations;
 use crate::equations::node::Node;
 use crate::law::variation::{ObservationVariation, PointVariation};
@@ -29,10 +29,11 @@ impl Variation {
         self.steer(ROW, equations, &force);
         self.feed_back(ROW);
         self.push_at(ROW, theta, equations);
+        self.read_works(equations, theta);
         let count = self.count();
         for e in 0..self.elements.len() {
             self.measure(e, ROW);
-            let ElementVariation { law, stroke, rate, inputs, row: [force, stored, derivative], .. } =
+            let ElementVariation { law, stroke, rate, inputs, row: [force, stored, derivative], told: tells, .. } =
                 &mut self.elements[e];
             let own = |blocks: &'_ Vec<f64>| blocks.len() / (ROW + 1) * ROW;
             let [values, rates] = &*inputs;
@@ -46,7 +47,8 @@ impl Variation {
             force.fill(0.0);
             stored.fill(0.0);
             derivative.fill(0.0);
-            let mut sum = ObservationVariation { force, stored, derivative };
+            tells.clear();
+            let mut sum = ObservationVariation { force, stored, derivative, told: tells };
             let point = evaluation.elements[e].point(evaluation.t);
             match theta {
                 Some(theta) => equations.bank.vary_at(e, (theta, &point), &told, law, &mut sum),
@@ -122,12 +124,18 @@ impl Variation {
                             _ => block(if order > 0.0 { &element.rate } else { &element.stroke }, ROW),
                         }
                     }
+                    ElementQuantity::Told(i) => {
+                        let place = self.system.elements[e].law.places_of_told()[i];
+                        block(&element.told, place)
+                    }
                     ElementQuantity::InputValue(i) => {
                         let [values, _] = &element.inputs;
                         let inputs = values.len() / ((ROW + 1) * count);
                         if inputs == 0 { vec![0.0; count] } else { block(values, ROW * inputs + i) }
                     }
-                    _ => return None,
+                    ElementQuantity::Dissipated => return self.work(e, 0),
+                    ElementQuantity::Input => return self.work(e, 1),
+                    ElementQuantity::Leaf(..) => return None,
                 }
             }
             Quantity::Gripper(axis) => {
@@ -135,28 +143,15 @@ impl Variation {
                 let line = &jacobian[axis.index() * self.nv()..][..self.nv()];
                 each(&|p| along(line, &node.q, p))
             }
-            Quantity::Energy(EnergyQuantity::Kinetic) => {
-                // (M v)·δv + (Cᵀ v)·δq, since Ṁ = C + Cᵀ.
-                let (n, v) = (self.nv(), &node.v_now);
-                let coriolis = coriolis(model, &node.kinematics);
-                let sum =
-                    |entry: &dyn Fn(usize) -> f64| -> f64 { v.iter().enumerate().map(|(c, v)| entry(c) * v).sum() };
-                let momentum: Vec<f64> = (0..n).map(|k| sum(&|c| node.slopes.d_a[k * n + c])).collect();
-                let bent: Vec<f64> = (0..n).map(|k| sum(&|c| coriolis[c * n + k])).collect();
-                let of_inertias = self.of_seeds(|seed| match seed {
-                    Seed::Inertia(change) => kinetic_energy(change, &node.kinematics),
-                    _ => 0.0,
-                });
-                each(&|p| along(&momentum, &node.v, p) + along(&bent, &node.q, p) + of_inertias[p])
-            }
-            Quantity::Energy(EnergyQuantity::Potential) => {
-                let weights = gravity(model, &node.kinematics);
-                let of_robot = self.of_seeds(|seed| match seed {
-                    Seed::Inertia(change) | Seed::Gravity(change) => potential_energy(change, &node.kinematics),
-                    _ => 0.0,
-                });
-                each(&|p| along(&weights, &node.q, p) + of_robot[p])
-            }
+            Quantity::Energy(of) => match of {
+                EnergyQuantity::Kinetic | EnergyQuantity::Potential => {
+                    let [kinetic, potential] = self.mechanical(ROW);
+                    if of == EnergyQuantity::Kinetic { kinetic } else { potential }
+                }
+                EnergyQuantity::Actuators => return self.work_of_actuators(),
+                EnergyQuantity::Joints => return self.lost_in_joints(),
+                EnergyQuantity::Residual => return None,
+            },
             Quantity::GripperError => {
                 // (H − H_d)·(δH − δH_d)/|H − H_d|. Along a given motion nothing moves.
                 let Some(control) = &self.control else { return Some(vec![0.0; count]) };
@@ -175,7 +170,7 @@ impl Variation {
                     if stays { 0.0 } else { sum / distance }
                 })
             }
-            Quantity::Energy(_) | Quantity::Derivative(_) => return None,
+            Quantity::Derivative(_) => return None,
         })
     }
 

@@ -317,6 +317,7 @@ impl Variation {
                     changes.for_each(|(v, later)| *v += (before - after) * later);
                 }
                 self.turn_inner_variables(equations, &later);
+                self.cross_works(equations, &later);
                 self.saltation.last = Some((start.t, later));
             }
             None if is_own && jump(a, a_after, &|_| true) => self.lose_all(start.t, "forces jump there"),

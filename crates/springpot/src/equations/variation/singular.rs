@@ -187,6 +187,11 @@ impl Variation {
         }
     }
 
+    /// Whether something is singular.
+    pub(crate) fn is_singular(&self) -> bool {
+        self.singular.is_there
+    }
+
     /// What changes of the acceleration of velocity `k` at the start (0) or at a node of the step by parameter `p`, without the share of singular
     /// forces.
     pub(crate) fn regular(&self, i: usize, k: usize, p: usize) -> f64 {

@@ -1,5 +1,6 @@
 //! What outlasts a step of what parameters change.
 
+use super::energies::WorksDone;
 use super::saltation::Saltation;
 use super::singular::SingularState;
 use super::{NodeVariation, Variation};
@@ -19,6 +20,7 @@ pub(crate) struct VariationState {
     singular: SingularState,
     laws: Vec<LawVariation>,
     saltation: Saltation,
+    works: WorksDone,
     control: Option<ControlVariationState>,
 }
 
@@ -36,16 +38,18 @@ impl Variation {
             laws,
             control,
             saltation: self.saltation.clone(),
+            works: self.works.save(),
         }
     }
 
     /// Goes on from what was saved where the run is at `start`; `false` where that is of another one.
     pub(crate) fn load(&mut self, state: VariationState, equations: &Equations, start: Node) -> bool {
-        let VariationState { motion: [q, v, a], sizes, hidden, singular, laws, control, saltation } = state;
+        let VariationState { motion: [q, v, a], sizes, hidden, singular, laws, control, saltation, works } = state;
         let (blocks, count) = (self.sizes[0].len(), self.count());
         if !self.singular.load(singular, count)
             || [laws.len(), hidden.len()] != [self.elements.len(); 2]
             || !saltation.fits(self.count())
+            || !self.works.load(works)
             || [&q, &v, &a].into_iter().chain(&sizes).any(|own| own.len() != blocks)
         {
             return false;
@@ -59,6 +63,7 @@ impl Variation {
         }
         let [node, ..] = &mut self.nodes;
         (node.q, node.v, node.a, self.sizes, self.hidden) = (q, v, a, sizes, hidden);
+        self.place_nodes();
         self.saltation = saltation;
         self.elements.iter_mut().zip(laws).for_each(|(element, law)| element.law = law);
         self.see_start(equations, start);

@@ -64,6 +64,16 @@ pub trait Columns: Leaf + Clone {
 
     /// The leaf between two steps.
     fn between<T: Real>(&self, at: &Point<T>, variables: &[T]) -> Observation<T>;
+
+    /// Hands over what it tells of itself ([`Leaf::tells`]): from the inner variables at the start of the step that `within` is in at θ, or between two.
+    fn told<T: Real>(
+        &self,
+        _within: Option<(&Step<T>, f64, &Self::Solved<T>)>,
+        _at: &Point<T>,
+        _variables: &[T],
+        _take: &mut dyn FnMut(T),
+    ) {
+    }
 }
 
 /// What a leaf with [`Columns`] tells of its derivatives.
@@ -177,9 +187,12 @@ impl<L: Columns> ByColumns for L {
         own: VariationRef,
         sum: &mut ObservationVariation,
     ) {
+        let first = sum.told.len();
+        sum.told.resize(first + self.tells().len() * own.count, 0.0);
+        let ObservationVariation { force, stored, told: tells, .. } = sum;
         let mut add = |p: usize, observation: Observation<Dual>| {
-            sum.force[p] += observation.regular.slope;
-            sum.stored[p] += observation.stored.map_or(f64::NAN, |stored| stored.slope);
+            force[p] += observation.regular.slope;
+            stored[p] += observation.stored.map_or(f64::NAN, |stored| stored.slope);
         };
         let moving = |p: usize| {
             let stroke = Dual { value: at.stroke, slope: told.stroke[p] };
@@ -191,6 +204,9 @@ impl<L: Columns> ByColumns for L {
                     let (stroke, rate, inputs) = moving(p);
                     let at = Point { t: at.t, stroke, rate, inputs: &inputs };
                     add(p, leaf.within(step, theta, &at, start, solved));
+                    tell(&mut tells[first..], (p, own.count), |take| {
+                        leaf.told(Some((step, theta, solved)), &at, start, take)
+                    });
                 });
             }
             _ => {
@@ -198,11 +214,19 @@ impl<L: Columns> ByColumns for L {
                     let (leaf, _) = column(self, &own, p);
                     let (stroke, rate, inputs) = moving(p);
                     let at = Point { t: at.t, stroke, rate, inputs: &inputs };
-                    add(p, leaf.between(&at, &variables(state.variables, &own, p)));
+                    let variables = variables(state.variables, &own, p);
+                    add(p, leaf.between(&at, &variables));
+                    tell(&mut tells[first..], (p, own.count), |take| leaf.told(None, &at, &variables, take));
                 }
             }
         }
     }
+}
+
+/// Puts what a leaf tells of itself into column `p` of blocks of `count`.
+fn tell(blocks: &mut [f64], (p, count): (usize, usize), told: impl FnOnce(&mut dyn FnMut(Dual))) {
+    let mut places = blocks.iter_mut().skip(p).step_by(count);
+    told(&mut |value: Dual| places.next().into_iter().for_each(|own| *own = value.slope));
 }
 
 /// Of inner variables nothing is known where a parameter moves the clock.

@@ -444,15 +444,13 @@ impl Leaf for Stack {
     }
 
     fn tell(&self, when: When, at: &Point, state: StateRef, take: &mut dyn FnMut(f64)) {
-        let kept = self.kept(state.variables);
-        let [charge, z] = match when {
-            When::Within(step, theta) => self.until(step, theta, &kept, &self.solve(step, &kept)),
-            When::Between => self.kept_now(&kept),
-        };
-        let drop = self.drop_at(&kept, charge, z);
-        let [drive, _] = self.driven(&kept, at.inputs[0].value);
-        let voltage = self.voltage(charge, at.stroke) + drop;
-        [voltage, charge, (drive - voltage) / self.resistance.value].into_iter().for_each(take);
+        match when {
+            When::Within(step, theta) => {
+                let solved = self.solve(step, &self.kept(state.variables));
+                self.told(Some((step, theta, &solved)), at, state.variables, take);
+            }
+            When::Between => self.told(None, at, state.variables, take),
+        }
     }
 
     /// Faster than the circuit: its charge stays.
@@ -688,5 +686,23 @@ impl Columns for Stack {
     fn between<T: Real>(&self, at: &Point<T>, variables: &[T]) -> Observation<T> {
         let kept = self.kept(variables);
         self.observation(&kept, at, self.kept_now(&kept))
+    }
+
+    fn told<T: Real>(
+        &self,
+        within: Option<(&Step<T>, f64, &Solved<T>)>,
+        at: &Point<T>,
+        variables: &[T],
+        take: &mut dyn FnMut(T),
+    ) {
+        let kept = self.kept(variables);
+        let [charge, z] = match within {
+            Some((step, theta, solved)) => self.until(step, theta, &kept, solved),
+            None => self.kept_now(&kept),
+        };
+        let drop = self.drop_at(&kept, charge, z);
+        let [drive, _] = self.driven(&kept, at.inputs[0].value);
+        let voltage = self.voltage(charge, at.stroke) + drop;
+        [voltage, charge, (drive - voltage) / T::of(self.resistance)].into_iter().for_each(take);
     }
 }

@@ -67,7 +67,9 @@ impl Radau {
             if whole || self.has_inner_variables {
                 (error, worst) = self.recorder_error(cx, recorder, h, whole, (error, worst));
             }
-            error = error.max(self.variation_error(recorder, target));
+            if error <= 1.0 {
+                error = error.max(self.variation_error(recorder, target));
+            }
         }
         let safety = 0.9 * 15.0 / (14.0 + f64::from(iterations));
         if error > 1.0 || error.is_nan() {

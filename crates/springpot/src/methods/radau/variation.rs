@@ -9,7 +9,7 @@ use super::estimate::raw;
 use super::step::{EstimateScratch, RadauStep};
 use crate::collocation::radau::{A, A_SQUARED, GAMMA};
 use crate::collocation::{RADAU_NODES, STAGES, TABLEAU};
-use crate::equations::{Equations, ROW, TANGENTS, Variation};
+use crate::equations::{Equations, ROW, StepErrors, TANGENTS, Variation};
 
 /// How often what changes of temperatures is found together with what changes of the motion.
 const MOST_PASSES: usize = 20;
@@ -50,16 +50,15 @@ impl RadauStep {
     ) -> bool {
         let count = variation.count();
         // The stages where the accelerations stay.
+        (1..=STAGES).for_each(|i| variation.take_start(i));
         let [start, stages @ .., _] = &mut variation.nodes;
         for (i, stage) in stages.iter_mut().enumerate() {
-            stage.q.copy_from_slice(&start.q);
-            stage.v.copy_from_slice(&start.v);
             stage.a.fill(0.0);
             let moved = RADAU_NODES[i] * h;
             for &k in free {
-                for block in k * count..(k + 1) * count {
-                    stage.q[block] += moved * start.v[block];
-                }
+                let block = k * count..(k + 1) * count;
+                let rates = &start.v[block.clone()];
+                stage.q[block].iter_mut().zip(rates).for_each(|(q, rate)| *q += moved * rate);
             }
         }
         variation.follow(equations);
@@ -69,13 +68,18 @@ impl RadauStep {
         if !free.is_empty() && !self.solve_variation(equations, variation, free, h) {
             return false;
         }
-        let [_, stages @ .., _] = &mut variation.nodes;
-        for block in free.iter().flat_map(|&k| k * count..(k + 1) * count) {
-            let a = stages.each_ref().map(|stage| stage.a[block]);
-            let sum = |row: &[f64; STAGES]| -> f64 { row.iter().zip(&a).map(|(weight, a)| weight * a).sum() };
-            for (i, stage) in stages.iter_mut().enumerate() {
-                stage.v[block] += h * sum(&A[i]);
-                stage.q[block] += h * h * sum(&A_SQUARED[i]);
+        let [_, first, second, third, _] = &mut variation.nodes;
+        for &k in free {
+            let block = k * count..(k + 1) * count;
+            let a = [&first.a, &second.a, &third.a].map(|a| &a[block.clone()]);
+            let moved = [(&mut first.v, &mut first.q), (&mut second.v, &mut second.q), (&mut third.v, &mut third.q)];
+            for ((v, q), (once, twice)) in moved.into_iter().zip(A.iter().zip(&A_SQUARED)) {
+                let changes = a[0].iter().zip(a[1]).zip(a[2]);
+                let own = v[block.clone()].iter_mut().zip(&mut q[block.clone()]);
+                for ((v, q), ((a, b), c)) in own.zip(changes) {
+                    *v += h * (once[0] * a + once[1] * b + once[2] * c);
+                    *q += h * h * (twice[0] * a + twice[1] * b + twice[2] * c);
+                }
             }
         }
         variation.follow(equations);
@@ -93,14 +97,18 @@ impl RadauStep {
         }
         let [start, stages @ .., _] = &variation.nodes;
         let EstimateScratch { changes: [speeds, places, errors], stiffness, .. } = &mut self.scratch;
-        for (blocks, of) in [(&mut *speeds, 0), (&mut *places, 1)] {
-            blocks.clear();
-            for block in free.iter().flat_map(|&k| k * count..(k + 1) * count) {
-                let [first, nodes @ ..] = match of {
-                    0 => [0, 1, 2, 3].map(|i| variation.regular(i, block / count, block % count)),
-                    _ => [start, &stages[0], &stages[1], &stages[2]].map(|node| node.v[block]),
-                };
-                blocks.push(raw(h, first, nodes));
+        speeds.clear();
+        places.clear();
+        for &k in &free {
+            let block = k * count..(k + 1) * count;
+            let at = [start, &stages[0], &stages[1], &stages[2]];
+            push_raw(h, at.map(|node| &node.v[block.clone()]), places);
+            match variation.is_singular() {
+                false => push_raw(h, at.map(|node| &node.a[block.clone()]), speeds),
+                true => speeds.extend((0..count).map(|p| {
+                    let [first, nodes @ ..] = [0, 1, 2, 3].map(|i| variation.regular(i, k, p));
+                    raw(h, first, nodes)
+                })),
             }
         }
         // M r_v − h γ_0 K r_q.
@@ -115,21 +123,9 @@ impl RadauStep {
             }
         }
         self.filter.solve_rows(errors, count);
-        let mut worst: f64 = 0.0;
-        let share = |error: f64, allowed: f64| if error == 0.0 { 0.0 } else { (error / allowed).powi(2) };
-        for p in (0..count).filter(|&p| variation.knows(p)) {
-            let (largest, mut sum) = (variation.largest(p), 0.0);
-            for (r, &k) in free.iter().enumerate() {
-                let [speed, travel] = self.errors.sized[r];
-                let sizes = variation.size(k, p, largest, [travel, speed]);
-                let [q, v] = sizes.map(|size| TANGENTS * self.errors.tolerance.rtol * size);
-                let (error, position) = (errors[r * count + p], places[r * count + p]);
-                sum += share(error, v) + share(position + step * error, q);
-            }
-            let rms = (sum / (2 * free.len()) as f64).sqrt();
-            worst = if rms.is_nan() { f64::INFINITY } else { worst.max(rms) };
-        }
-        worst
+        places.iter_mut().zip(&*errors).for_each(|(place, error)| *place += step * error);
+        let (rtol, errors) = (TANGENTS * self.errors.tolerance.rtol, [&errors[..], &places[..]]);
+        variation.step_error(&free, StepErrors { errors, moved: &self.errors.sized, rtol })
     }
 
     /// What changes of the motion at θ of the step that was solved, of size `h`, into node [`ROW`].
@@ -254,4 +250,12 @@ impl RadauStep {
             }
         }
     }
+}
+
+/// Appends [`raw`] of blocks of a quantity at the start and at the nodes.
+fn push_raw(h: f64, [start, first, second, third]: [&[f64]; 4], to: &mut Vec<f64>) {
+    let nodes = first.iter().zip(second).zip(third);
+    to.extend(
+        start.iter().zip(nodes).map(|(start, ((first, second), third))| raw(h, *start, [*first, *second, *third])),
+    );
 }

@@ -619,7 +619,8 @@ impl Vary for Heated {
             };
             let mut spare = vec![0.0; count];
             let mut unused = vec![0.0; count];
-            let mut at_start = ObservationVariation { force: start, stored: &mut spare, derivative: &mut unused };
+            let told = &mut Vec::new();
+            let mut at_start = ObservationVariation { force: start, stored: &mut spare, derivative: &mut unused, told };
             let when = (When::Between, &place.point());
             self.law.ask().vary_at(when, &mut behind.clone(), &of_start, &mut own_behind.clone(), &mut at_start);
             self.law.ask().vary(&inner, &mut behind.clone(), &of_step, &mut own_behind.clone(), rest);
@@ -656,10 +657,16 @@ impl Vary for Heated {
             let kept = self.own(state.take(self.own_size()).variables, at.t);
             let place = self.place(at, kept.xi, self.temperature(&kept, at.inputs));
             let inside = self.told_point(at, told, &numbers, |p| self.temperature_now(&kept, at, told, (&share, p)));
-            return self.law.ask().vary_at((When::Between, &place.point()), state, &inside.point(None), own, sum);
+            self.law.ask().vary_at((When::Between, &place.point()), state, &inside.point(None), own, sum);
+            if self.heat.thermal.is_some() {
+                let clock = usize::from(self.heat.shift.is_some());
+                [clock, clock + 1].into_iter().for_each(|k| sum.told.extend(share.variable(k)));
+            }
+            return;
         };
         let Some((kept, course, inside)) = self.look(step, state) else {
             sum.force.fill(f64::NAN);
+            sum.told.extend(vec![f64::NAN; 2 * share.count]);
             return self.law.ask().pass(state);
         };
         let warmed = self.warmed(step, &kept, &course, &inside, *state, around, (&whole, &numbers));
@@ -673,7 +680,7 @@ impl Vary for Heated {
         let place = self.place(at, kept.xi + fraction * inside.clock.h, temperature);
         let of_step = self.told_inside(step, &warmed, around, &numbers, false);
         let quadrature = step.quadrature(theta);
-        let mut of_point = self.told_point(at, told, &numbers, |p| {
+        let temperature_at = |p: usize| {
             if self.heat.thermal.is_none() {
                 return self.temperature_now(&kept, at, told, (&share, p));
             }
@@ -691,10 +698,22 @@ impl Vary for Heated {
                 Dual { value: temperature.value, slope: start.slope + step.h * moved },
                 Dual { value: temperature.rate, slope: rate },
             ]
-        });
+        };
+        let temperatures: Vec<[Dual; 2]> = (0..share.count).map(temperature_at).collect();
+        let mut of_point = self.told_point(at, told, &numbers, |p| temperatures[p]);
         of_point.passed = self.passed(step, &warmed, &numbers, Some(theta));
         let (inner, count) = (inside.step(step), share.count);
         let told = of_point.point(Some(of_step.step(count)));
         self.law.ask().vary_at((When::Within(&inner, fraction), &place.point()), state, &told, own, sum);
+        if self.heat.thermal.is_some() {
+            let lost = |(p, own): (usize, &Warmed)| {
+                let [_, conductance, ambient, _] = numbers[p].thermal;
+                let flow = |k: usize| (conductance * (own.temperature[k] - ambient)).slope;
+                let flows = quadrature.iter().enumerate().map(|(k, weight)| weight * flow(k)).sum::<f64>();
+                share.variable(usize::from(self.heat.shift.is_some()) + 1)[p] + step.h * flows
+            };
+            sum.told.extend(temperatures.iter().map(|[temperature, _]| temperature.slope));
+            sum.told.extend(warmed.iter().enumerate().map(lost));
+        }
     }
 }

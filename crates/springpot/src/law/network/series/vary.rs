@@ -395,7 +395,9 @@ impl Series {
                 let (told, mut spare) =
                     (PointVariation { stroke: starts.variable(k), rate, step: None, ..*told }, vec![0.0; count]);
                 let mut unused = vec![0.0; count];
-                let mut sum = ObservationVariation { force, stored: &mut spare, derivative: &mut unused };
+                let told_there = &mut Vec::new();
+                let mut sum =
+                    ObservationVariation { force, stored: &mut spare, derivative: &mut unused, told: told_there };
                 part.ask().vary_at((When::Between, &inside), &mut state, &told, &mut own, &mut sum);
                 (state, own)
             };
@@ -426,15 +428,15 @@ impl Series {
         (0..count).map(column).unzip()
     }
 
-    /// As [`Part::vary_at`] between two steps, but of the stored energy alone.
-    fn stored_now(
+    /// As [`Part::vary_at`] between two steps, but of all but the force.
+    fn rest_now(
         &self,
         at: &Point,
         strokes: &[f64],
         state: &mut StateRef,
         told: &PointVariation,
         own: VariationRef,
-        (rates, [stored, derivative]): (&[[f64; MOST_IN_SERIES]], [&mut [f64]; 2]),
+        (rates, sum): (&[[f64; MOST_IN_SERIES]], &mut ObservationVariation),
     ) {
         let settled = self.settle(at, strokes, *state);
         let (count, mut of_parts) = (own.count, own);
@@ -444,7 +446,8 @@ impl Series {
             let told = PointVariation { stroke: starts.variable(k), rate: &rate, step: None, ..*told };
             let inside = Point { stroke: strokes[k], rate: settled.rates[k], ..*at };
             let mut spare = vec![0.0; count];
-            let mut sum = ObservationVariation { force: &mut spare, stored, derivative };
+            let ObservationVariation { stored, derivative, told: tells, .. } = &mut *sum;
+            let mut sum = ObservationVariation { force: &mut spare, stored, derivative, told: tells };
             part.ask().vary_at((When::Between, &inside), state, &told, &mut of_parts, &mut sum);
         }
     }
@@ -633,7 +636,7 @@ impl Vary for Series {
             let (strokes, _) = self.own(state);
             let (now, rates) = self.change_now(at, strokes, *state, told, share);
             add(sum.force, 1.0, force.as_ref().unwrap_or(&now));
-            return self.stored_now(at, strokes, state, told, share, (&rates, [sum.stored, sum.derivative]));
+            return self.rest_now(at, strokes, state, told, share, (&rates, sum));
         };
         let is_between = theta < 1.0 && step.nodes == Nodes::Radau && step.course == Course::Sought;
         let between = is_between.then(|| {
@@ -657,7 +660,8 @@ impl Vary for Series {
                 passed: changes.passed.as_ref().map(|passed| &passed[(last - 1) * share.count..]),
             };
             let mut spare = vec![0.0; share.count];
-            let mut sum = ObservationVariation { force: &mut spare, stored: sum.stored, derivative: sum.derivative };
+            let ObservationVariation { stored, derivative, told, .. } = &mut *sum;
+            let mut sum = ObservationVariation { force: &mut spare, stored, derivative, told };
             let when = (When::Within(&inner.step(&step), 1.0), &inside);
             part.ask().vary_at(when, state, &of_part, &mut of_parts, &mut sum);
         }

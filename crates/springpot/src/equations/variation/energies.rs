@@ -1,0 +1,297 @@
+//! What parameters change of what is dissipated, supplied and lost since t = 0.
+
+use super::{ROW, Variation, at_start, felt, of_step};
+use crate::collocation::{Nodes, STAGES};
+use crate::dynamics::{coriolis, gravity, kinetic_energy, potential_energy};
+use crate::equations::assembly::Equations;
+use crate::equations::resistance::each_loss_slope;
+use crate::law::variation::{ObservationVariation, PowersVariation};
+use crate::law::{Power, Powers};
+use crate::model::FrictionLaw;
+use crate::observe::{ElementQuantity, EnergyQuantity, Quantity};
+use crate::sensitivity::{Seed, Sensitivity};
+use serde::{Deserialize, Serialize};
+
+/// What is stored at most in an end that is just hit, in units of what it would take in the time so far.
+const NOTHING: f64 = 1e-13;
+
+/// What parameters change of works.
+#[derive(Debug)]
+pub(super) struct Works {
+    /// Whether somebody asks for them.
+    is_kept: bool,
+    /// Those of the steps that are over.
+    done: WorksDone,
+    /// Flows of the step at hand, once asked for.
+    flows: Option<Flows>,
+    /// At the row: of every element dissipated and supplied, and what joints lost.
+    row: (Vec<[Vec<f64>; 2]>, Vec<f64>),
+}
+
+/// What of it outlasts a step: blocks of parameters.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub(crate) struct WorksDone {
+    /// Of every element, dissipated and supplied since t = 0.
+    elements: Vec<[Vec<f64>; 2]>,
+    /// Lost in joints since t = 0.
+    joints: Vec<f64>,
+    /// Kinetic, potential and stored energy at t = 0.
+    origin: Vec<f64>,
+    /// What was crossed before the step at hand.
+    crossed: Option<Crossed>,
+}
+
+/// A change that comes later by so much, s, and what every element dissipated and was supplied with before, W; of one whose force jumps by how much less
+/// it dissipates behind it, where that is known.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct Crossed {
+    later: Vec<f64>,
+    before: Vec<([f64; 2], Option<f64>)>,
+}
+
+/// What changes of the flows at the start and at the nodes of a step.
+#[derive(Debug)]
+struct Flows {
+    elements: Vec<[Vec<f64>; 2]>,
+    joints: Vec<f64>,
+}
+
+impl Works {
+    pub(super) fn new(by: &Sensitivity, elements: usize) -> Self {
+        let count = by.parameters.len();
+        let asks = |of: Quantity| match of {
+            Quantity::Element(_, of) => matches!(of, ElementQuantity::Dissipated | ElementQuantity::Input),
+            Quantity::Energy(of) => matches!(of, EnergyQuantity::Actuators | EnergyQuantity::Joints),
+            _ => false,
+        };
+        let blocks = || vec![0.0; count];
+        let each = || (0..elements).map(|_| [blocks(), blocks()]).collect();
+        Self {
+            // Who names no columns asks for any of them.
+            is_kept: by.columns.is_empty() || by.columns.iter().any(|column| asks(column.of)),
+            done: WorksDone { elements: each(), joints: blocks(), origin: blocks(), crossed: None },
+            flows: None,
+            row: (each(), blocks()),
+        }
+    }
+
+    /// The flows of another step are asked for from now on.
+    pub(super) fn forget(&mut self) {
+        self.flows = None;
+    }
+
+    pub(super) fn save(&self) -> WorksDone {
+        self.done.clone()
+    }
+
+    pub(super) fn load(&mut self, done: WorksDone) -> bool {
+        let fits = done.elements.len() == self.done.elements.len() && done.joints.len() == self.done.joints.len();
+        (self.done, self.flows) = (done, None);
+        fits
+    }
+}
+
+impl Flows {
+    /// What comes of blocks of flows until θ of a step of size `h`.
+    fn until(flows: &[f64], count: usize, (h, theta): (f64, f64), to: &mut [f64]) {
+        for (p, to) in to.iter_mut().enumerate() {
+            let mut powers = Powers::default();
+            for (power, flow) in powers.iter_mut().zip(flows.iter().skip(p).step_by(count)) {
+                power.dissipation = *flow;
+            }
+            *to += Power::integrate(&powers, Nodes::Radau, h, theta).dissipation;
+        }
+    }
+}
+
+impl Variation {
+    /// Takes in what changes of the energies at the start that was seen.
+    pub(super) fn begin_works(&mut self, equations: &Equations) {
+        if !self.works.is_kept {
+            return;
+        }
+        let count = self.count();
+        let [mut origin, potential] = self.mechanical(0);
+        origin.iter_mut().zip(potential).for_each(|(sum, own)| *sum += own);
+        let (mut force, mut derivative, mut told) = (vec![0.0; count], vec![0.0; count], Vec::new());
+        for (e, element) in self.elements.iter().enumerate() {
+            let at = at_start(count, [&element.stroke, &element.rate], &element.inputs);
+            let (force, derivative, told) = (&mut force, &mut derivative, &mut told);
+            let mut sum = ObservationVariation { force, stored: &mut origin, derivative, told };
+            equations.bank.vary_now(e, &equations.bank.point(e, 0), &at, &element.law, &mut sum);
+        }
+        self.works.done.origin = origin;
+    }
+
+    /// Something is crossed that comes later by so much: flows jump there.
+    pub(super) fn cross_works(&mut self, equations: &Equations, later: &[f64]) {
+        if self.works.is_kept {
+            let before = |e: usize| {
+                let (bank, last) = (&equations.bank, equations.bank.powers(e)[STAGES]);
+                let flows = [last.dissipation, last.input];
+                if !self.system.elements[e].law.jumps() {
+                    return (flows, None);
+                }
+                // An end that is hit has nothing stored yet: all of its force, on whichever side of it that is told, is lost from there on.
+                let at = bank.point(e, 0);
+                let force = [equations.force_behind(e), bank.response(e).force[STAGES - 1]];
+                let lost = force[usize::from(force[0] == 0.0)] * at.rate;
+                let stored = bank.now(e, &at).and_then(|observation| observation.stored).unwrap_or(0.0);
+                (flows, Some(if stored <= NOTHING * lost.abs() * at.t { -lost } else { 0.0 }))
+            };
+            let later = later.iter().map(|later| if later.is_finite() { *later } else { 0.0 }).collect();
+            let before = (0..self.elements.len()).map(before).collect();
+            self.works.done.crossed = Some(Crossed { later, before });
+        }
+    }
+
+    /// An input of element `e` jumps, and what it has stored with it: what that supplies changes as nobody tells.
+    pub(crate) fn lose_supplied(&mut self, e: usize) {
+        let [_, supplied] = &mut self.works.done.elements[e];
+        supplied.fill(f64::NAN);
+    }
+
+    /// Works out the flows of the step at hand, whose motion is known, where that was not done.
+    fn flow(&mut self, equations: &Equations) {
+        if self.works.flows.is_some() {
+            return;
+        }
+        let count = self.count();
+        if let Some(Crossed { later, before }) = self.works.done.crossed.take() {
+            // Δ∫P dt = (P⁻ − P⁺)·δt*.
+            let works = self.works.done.elements.iter_mut().zip(before).enumerate();
+            for (e, ([dissipated, supplied], ([dissipation, input], less))) in works {
+                let after = equations.bank.powers(e)[0];
+                let less = less.unwrap_or(dissipation - after.dissipation);
+                for (work, jump) in [(dissipated, less), (supplied, input - after.input)] {
+                    work.iter_mut().zip(&later).for_each(|(work, later)| *work += jump * later);
+                }
+            }
+        }
+        let blocks = || vec![0.0; (STAGES + 1) * count];
+        let mut flows = Flows { elements: Vec::with_capacity(self.elements.len()), joints: blocks() };
+        for (e, element) in self.elements.iter().enumerate() {
+            let told = of_step(count, [&element.stroke, &element.rate], &element.inputs);
+            let mut own = [blocks(), blocks()];
+            let [dissipation, input] = &mut own;
+            equations.bank.vary_powers(e, &told, &element.law, &mut PowersVariation { dissipation, input });
+            flows.elements.push(own);
+        }
+        let model = &self.system.model;
+        for (i, flow) in flows.joints.chunks_exact_mut(count).enumerate() {
+            let node = &self.nodes[i];
+            each_loss_slope(&self.system, &node.v_now, |k, slope| {
+                let changes = node.v[k * count..].iter();
+                flow.iter_mut().zip(changes).for_each(|(flow, change)| *flow += slope * change);
+            });
+            for (p, parameter) in self.by.parameters.iter().enumerate() {
+                for seed in &parameter.seeds {
+                    match seed {
+                        Seed::Damping { joint, by } => flow[p] += by * felt(model, *joint, &node.v_now).2.powi(2),
+                        Seed::Friction { joint, by } => {
+                            let (_, _, speed) = felt(model, *joint, &node.v_now);
+                            flow[p] += by
+                                * match model.friction_laws()[*joint] {
+                                    FrictionLaw::Smooth { speed: width } => speed * (speed / width).tanh(),
+                                    FrictionLaw::Sticking => speed.abs(),
+                                };
+                        }
+                        _ => {}
+                    }
+                }
+            }
+        }
+        self.works.flows = Some(flows);
+    }
+
+    /// Takes the flows of the accepted step in; the bank has not taken it yet.
+    pub(super) fn commit_works(&mut self, equations: &Equations) {
+        if !self.works.is_kept {
+            return;
+        }
+        self.flow(equations);
+        let (count, Works { done, flows, .. }) = (self.by.parameters.len(), &mut self.works);
+        let Some(Flows { elements, joints }) = flows.take() else { return };
+        let whole = (equations.bank.size(), 1.0);
+        for (done, flows) in done.elements.iter_mut().flatten().zip(elements.iter().flatten()) {
+            Flows::until(flows, count, whole, done);
+        }
+        Flows::until(&joints, count, whole, &mut done.joints);
+    }
+
+    /// Works out what has changed of the works until a row, at θ of the step at hand or between two.
+    pub(super) fn read_works(&mut self, equations: &Equations, theta: Option<f64>) {
+        if !self.works.is_kept {
+            return;
+        }
+        if theta.is_some() {
+            self.flow(equations);
+        }
+        let (count, Works { done, flows, row, .. }) = (self.by.parameters.len(), &mut self.works);
+        row.0.clone_from(&done.elements);
+        row.1.clone_from(&done.joints);
+        if let Some((theta, Flows { elements, joints })) = theta.zip(flows.as_ref()) {
+            let part = (equations.bank.size(), theta);
+            for (row, flows) in row.0.iter_mut().flatten().zip(elements.iter().flatten()) {
+                Flows::until(flows, count, part, row);
+            }
+            Flows::until(joints, count, part, &mut row.1);
+        }
+    }
+
+    /// What changes at the row of what element `e` has dissipated (0) or was supplied with (1).
+    pub(super) fn work(&self, e: usize, which: usize) -> Option<Vec<f64>> {
+        self.works.is_kept.then(|| self.works.row.0[e][which].clone())
+    }
+
+    /// What changes at the row of what was lost in joints; ends of joints that give way are among them.
+    pub(super) fn lost_in_joints(&self) -> Option<Vec<f64>> {
+        let mut sum = self.works.is_kept.then(|| self.works.row.1.clone())?;
+        for (e, _) in self.system.elements.iter().enumerate().filter(|(_, element)| !element.shown) {
+            let [_, stored, _] = &self.elements[e].row;
+            let own = stored.iter().zip(&self.works.row.0[e][0]);
+            sum.iter_mut().zip(own).for_each(|(sum, (stored, dissipated))| *sum += stored + dissipated);
+        }
+        Some(sum)
+    }
+
+    /// What changes at the row of the work of the actuators: what of all energies changes, less what did so at t = 0, since their balance holds for all
+    /// values of the parameters.
+    pub(super) fn work_of_actuators(&self) -> Option<Vec<f64>> {
+        let mut sum = self.works.is_kept.then(|| self.works.row.1.clone())?;
+        let [kinetic, potential] = self.mechanical(ROW);
+        for (p, sum) in sum.iter_mut().enumerate() {
+            *sum += kinetic[p] + potential[p] - self.works.done.origin[p];
+            for (element, [dissipated, supplied]) in self.elements.iter().zip(&self.works.row.0) {
+                *sum += element.row[1][p] + dissipated[p] - supplied[p];
+            }
+        }
+        Some(sum)
+    }
+
+    /// What changes of kinetic and potential energy at node `i`.
+    pub(super) fn mechanical(&self, i: usize) -> [Vec<f64>; 2] {
+        let (count, n, node, model) = (self.count(), self.nv(), &self.nodes[i], &self.system.model);
+        let along = |slopes: &[f64], blocks: &[f64], p: usize| -> f64 {
+            slopes.iter().enumerate().map(|(k, slope)| slope * blocks[k * count + p]).sum()
+        };
+        // (M v)·δv + (Cᵀ v)·δq, since Ṁ = C + Cᵀ.
+        let v = &node.v_now;
+        let coriolis = coriolis(model, &node.kinematics);
+        let sum = |entry: &dyn Fn(usize) -> f64| -> f64 { v.iter().enumerate().map(|(c, v)| entry(c) * v).sum() };
+        let momentum: Vec<f64> = (0..n).map(|k| sum(&|c| node.slopes.d_a[k * n + c])).collect();
+        let bent: Vec<f64> = (0..n).map(|k| sum(&|c| coriolis[c * n + k])).collect();
+        let weights = gravity(model, &node.kinematics);
+        let of_inertias = self.of_seeds(|seed| match seed {
+            Seed::Inertia(change) => kinetic_energy(change, &node.kinematics),
+            _ => 0.0,
+        });
+        let of_robot = self.of_seeds(|seed| match seed {
+            Seed::Inertia(change) | Seed::Gravity(change) => potential_energy(change, &node.kinematics),
+            _ => 0.0,
+        });
+        let kinetic = |p: usize| along(&momentum, &node.v, p) + along(&bent, &node.q, p) + of_inertias[p];
+        let potential = |p: usize| along(&weights, &node.q, p) + of_robot[p];
+        [(0..count).map(kinetic).collect(), (0..count).map(potential).collect()]
+    }
+}

@@ -1,0 +1,117 @@
+//! How large what parameters change is, and how well a step knows it.
+
+use super::{Variation, of_step};
+use crate::collocation::STAGES;
+use crate::equations::assembly::Equations;
+use crate::law::variation::VariationError;
+
+/// What changes may err in a step, in units of what the motion may: so they come to the accuracy that the motion comes to in its own steps.
+pub(crate) const TANGENTS: f64 = 4.0;
+
+/// Share of what the motion comes to that a change by the whole of a parameter is expected to come to at least.
+const BEGUN: f64 = 1e-3;
+
+/// Share of the largest change below which that of one velocity counts as so large.
+const BESIDE: f64 = 1e-4;
+
+/// What a step knows of the changes of its velocities and places, and what the motion itself comes to.
+pub(crate) struct StepErrors<'a> {
+    /// Errors of v and of q, a block of parameters for each of the rows.
+    pub(crate) errors: [&'a [f64]; 2],
+    /// Speed and travel of the motion at each row.
+    pub(crate) moved: &'a [[f64; 2]],
+    /// Tolerance of what changes, relative.
+    pub(crate) rtol: f64,
+}
+
+impl Variation {
+    /// Whether its errors share in the choice of steps.
+    pub(crate) fn shares_in_steps(&self) -> bool {
+        self.by.control
+    }
+
+    /// The estimate of the step's error of the parameter whose changes of the velocities `rows` it knows least, in units of its tolerance: the rms of q and
+    /// v of all rows.
+    ///
+    /// A change is measured by how large it has been so far, that at the end of the step at hand included. What hardly changes beside the others is
+    /// measured by them, and what begins like no power of t, alike on every scale of it, by the travel and the speed of the motion itself.
+    pub(crate) fn step_error(&self, rows: &[usize], StepErrors { errors, moved, rtol }: StepErrors) -> f64 {
+        let count = self.count();
+        let (last, [sizes_q, sizes_v]) = (&self.nodes[STAGES], &self.sizes);
+        let sized = |k: usize| {
+            let block = k * count..(k + 1) * count;
+            let of = |sizes: &'_ [f64], last: &'_ [f64]| -> Vec<f64> {
+                let (sizes, last) = (sizes[block.clone()].iter(), last[block.clone()].iter());
+                sizes.zip(last).map(|(size, last)| size.max(last.abs())).collect()
+            };
+            [of(sizes_q, &last.q), of(sizes_v, &last.v)]
+        };
+        let mut beside = [vec![0.0f64; count], vec![0.0f64; count]];
+        for &k in &self.own_v {
+            for (beside, own) in beside.iter_mut().zip(sized(k)) {
+                beside.iter_mut().zip(own).for_each(|(most, own)| *most = most.max(BESIDE * own));
+            }
+        }
+        let mut sums = vec![0.0; count];
+        for (r, (&k, [speed, travel])) in rows.iter().zip(moved).enumerate() {
+            let own = sized(k);
+            for (((own, beside), errors), (moved, of_place)) in
+                own.iter().zip(&beside).zip([errors[1], errors[0]]).zip([(travel, true), (speed, false)])
+            {
+                let errors = &errors[r * count..(r + 1) * count];
+                for (p, (sum, error)) in sums.iter_mut().zip(errors).enumerate() {
+                    let jump = if of_place { self.jump_travel(k, p) } else { 0.0 };
+                    let allowed = rtol * own[p].max(beside[p]).max(moved * self.expected[p]).max(jump);
+                    *sum += if *error == 0.0 { 0.0 } else { (error / allowed).powi(2) };
+                }
+            }
+        }
+        let known = sums.iter().enumerate().filter(|(p, _)| self.knows(*p)).map(|(_, sum)| sum);
+        known.fold(0.0, |worst, sum| {
+            let rms = (sum / (2 * rows.len()) as f64).sqrt();
+            if rms.is_nan() { f64::INFINITY } else { worst.max(rms) }
+        })
+    }
+
+    /// The estimate of the step's error of what changes of the inner variables of laws, the worst one in units of its tolerance, `rtol` of its size.
+    pub(crate) fn hidden_error(&self, equations: &Equations, rtol: f64) -> f64 {
+        let (mut worst, count) = (0.0f64, self.count());
+        for ((e, element), sizes) in self.elements.iter().enumerate().zip(&self.hidden) {
+            if element.law.variables().is_empty() {
+                continue;
+            }
+            let told = of_step(count, [&element.stroke, &element.rate], &element.inputs);
+            equations.bank.vary_errors(e, &told, &element.law, &mut |variable, own| {
+                let VariationError { parameter: p, error, change, coming, size } = own;
+                if error == 0.0 || !self.knows(p) {
+                    return;
+                }
+                let so_far = sizes.get(variable * count + p).copied().unwrap_or(0.0);
+                let share = error / (rtol * so_far.max(change).max(coming).max(self.expected[p] * size));
+                worst = if share.is_nan() { f64::INFINITY } else { worst.max(share) };
+            });
+        }
+        worst
+    }
+
+    /// Takes in how large the changes where the next step starts are.
+    pub(super) fn take_sizes(&mut self) {
+        for (element, sizes) in self.elements.iter().zip(&mut self.hidden) {
+            let now = element.law.variables();
+            sizes.resize(now.len(), 0.0);
+            sizes.iter_mut().zip(now).for_each(|(size, now)| *size = size.max(now.abs()));
+        }
+        let (count, Self { nodes: [start, ..], sizes: [q, v], own_v, .. }) = (self.by.parameters.len(), self);
+        for (sizes, now) in [(q, &start.q), (v, &start.v)] {
+            for block in own_v.iter().map(|k| k * count..(k + 1) * count) {
+                let now = now[block.clone()].iter();
+                sizes[block].iter_mut().zip(now).for_each(|(size, now)| *size = size.max(now.abs()));
+            }
+        }
+    }
+
+    /// For each parameter, by how much of what the motion comes to it is expected to change that at least, in units of the parameter.
+    pub(super) fn expected(typical: impl Iterator<Item = f64>) -> Vec<f64> {
+        typical.map(|typical| if typical == 0.0 { 0.0 } else { BEGUN / typical.abs() }).collect()
+    }
+}
