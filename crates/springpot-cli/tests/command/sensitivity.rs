@@ -122,7 +122,12 @@ fn what_cannot_be_differentiated_is_refused() {
         (&["--sensitivity", "element.strut.kk"], "`element.strut` has no `kk`"),
         (&["--sensitivity", "element.strut.k", "--sweep", "element.strut.k=1,2"], "it is swept"),
         (
-            &["--sensitivity", "element.strut.k", "--set", "solver={ method = \"midpoint\", step = 0.01 }"],
+            &[
+                "--sensitivity",
+                "element.strut.k",
+                "--set",
+                "motion.torque.q2={ expression = \"-strut.derivative\", unit = \"N*m\", sample = \"10 ms\" }",
+            ],
             "the run cannot be differentiated",
         ),
     ] {

@@ -173,8 +173,9 @@ impl Extended {
 
     /// ∂y/∂q of element `e` where the run starts.
     pub(super) fn gradient(&self, e: usize) -> Vec<f64> {
-        let Motion::Forward(forward) = &self.system.motion else { return Vec::new() };
-        let kinematics = Kinematics::at_velocity(self.model(), &forward.q, &forward.v);
+        // Joints that signals move start where these say. Where nothing can start a run says why.
+        let Ok(start) = self.system.state(0.0) else { return Vec::new() };
+        let kinematics = Kinematics::at_velocity(self.model(), &start.q, &start.v);
         self.system.elements[e].measure.read(self.model(), &kinematics).1
     }
 }

@@ -10,7 +10,8 @@ use springpot::elements::Component;
 use springpot::law::{Heat, Shift};
 use springpot::model::JointKind;
 use springpot::observe::{ElementQuantity, Quantity};
-use springpot::system::{Action, Setting};
+use springpot::spatial::{Quaternion, Rotation};
+use springpot::system::{Action, Motion, Setting};
 
 /// A step of a path that a row is about.
 #[derive(Debug, Clone, Copy)]
@@ -112,6 +113,7 @@ static ROWS: &[Row] = &[
     signal(row(&[Key("element"), Item, Key("bushing"), Any, Key("inputs"), Any], Nothing, input)),
     row(&[Key("motion"), Key("start"), Key("q"), Any], Zero, start_q),
     row(&[Key("motion"), Key("start"), Key("q"), Any, Any], Zero, start_q),
+    row(&[Key("motion"), Key("start"), Key("q"), Any, Key("rpy"), Item], NONE, start_q),
     row(&[Key("motion"), Key("start"), Key("v"), Any], Zero, start_v),
     row(&[Key("motion"), Key("start"), Key("v"), Any, Any], Zero, start_v),
     signal(row(&[Key("motion"), Key("torque"), Any], Zero, torque)),
@@ -468,19 +470,70 @@ fn input(gather: &mut Gather, scene: &Scene<'_>, steps: &[Step], slope: Slope) -
     Ok(())
 }
 
-/// The velocity of the coordinate of its own that a path by joint leads to.
+/// The velocity that a path by joint leads to: that of a joint of one degree, or one of those of a joint that turns freely.
 pub(super) fn velocity(scene: &Scene<'_>, steps: &[Step]) -> Result<usize, String> {
     let name = steps.iter().map(key).collect::<Vec<_>>().join(".");
     let model = &scene.plan.model;
     let joint = model.own_joints().find(|&j| model.joint_names()[j] == name);
-    let joint = joint.filter(|&j| model.joint_space(j).dimension().is_some());
-    joint.map(|j| model.v_range(j).start).ok_or_else(|| "no derivative is known of joints with quaternions".to_owned())
+    if let Some(j) = joint.filter(|&j| model.joint_space(j).dimension().is_some()) {
+        return Ok(model.v_range(j).start);
+    }
+    let of_part = || {
+        let (joint, part) = (free_joint(scene, steps)?, key(steps.get(1)?));
+        let place = model.joint_space(joint).velocities().iter().position(|(name, _)| *name == part)?;
+        Some(model.v_range(joint).start + place)
+    };
+    of_part().ok_or_else(|| "no derivative by it is known".to_owned())
 }
+
+/// The joint that turns freely which a path by joint leads to.
+fn free_joint(scene: &Scene<'_>, steps: &[Step]) -> Option<usize> {
+    let model = &scene.plan.model;
+    let joint = model.own_joints().find(|&j| model.joint_names()[j] == key(&steps[0]));
+    joint.filter(|&j| model.joint_space(j).quaternion().is_some())
+}
+
+/// How a joint that turns freely starts otherwise where one of its numbers is larger by 1: its velocities, in its own axes.
+fn free_start(scene: &Scene<'_>, joint: usize, steps: &[Step]) -> Result<Vec<(usize, f64)>, String> {
+    let (model, Motion::Forward(forward)) = (&scene.plan.model, &scene.system.motion) else {
+        return Err("the motion is given in advance".to_owned());
+    };
+    let (q, first) = (&forward.q[model.q_range(joint)], model.v_range(joint).start);
+    let turn = model.joint_space(joint).quaternion().unwrap_or(0);
+    let Rotation(turned) = Rotation::from_quaternion(Quaternion([q[turn], q[turn + 1], q[turn + 2], q[turn + 3]]));
+    if let Some(axis) = ["x", "y", "z"].iter().position(|axis| *axis == key(&steps[1])).filter(|_| turn == 3) {
+        return Ok((0..3).map(|k| (first + k, turned[axis][k])).collect());
+    }
+    // R = Rz(yaw) Ry(pitch) Rx(roll).
+    let (sine, level) = (-turned[2][0], turned[2][1].hypot(turned[2][2]));
+    let by = match (key(&steps[1]), steps.get(2).map(item)) {
+        ("rpy", Some(0)) => [1.0, 0.0, 0.0],
+        ("rpy", Some(1)) if level > UPRIGHT => [0.0, turned[2][2] / level, -turned[2][1] / level],
+        ("rpy", Some(1)) => return Err("at a pitch of 90 deg roll and yaw are one angle".to_owned()),
+        ("rpy", Some(2)) => [-sine, turned[2][1], turned[2][2]],
+        _ => return Err("no derivative by it is known".to_owned()),
+    };
+    Ok(by.iter().enumerate().map(|(k, by)| (first + turn + k, *by)).collect())
+}
+
+/// Cosine of the pitch beyond which roll and yaw are told apart.
+const UPRIGHT: f64 = 1e-9;
 
 /// Why the start of a joint that nothing moves cannot be a parameter.
 const COASTS: &str = "no derivative is known of joints that go on as they start, since they carry no mass";
 
 fn start_q(gather: &mut Gather, scene: &Scene<'_>, steps: &[Step], slope: Slope) -> Moved {
+    if let Some(joint) = free_joint(scene, &steps[3..]).filter(|_| steps.len() > 4) {
+        let by = slope.number()?;
+        for (velocity, own) in free_start(scene, joint, &steps[3..])? {
+            match scene.drive(velocity) {
+                Some(Drive::Prescribed(_)) if scene.says("prescribed", velocity) => {}
+                Some(Drive::Prescribed(_)) => return Err(COASTS.to_owned()),
+                _ => gather.q.push((velocity, by * own)),
+            }
+        }
+        return Ok(());
+    }
     let velocity = velocity(scene, &steps[3..])?;
     // Where a joint starts that is prescribed, its path says.
     match scene.drive(velocity) {

@@ -1,9 +1,10 @@
 //! Derivatives across changes: joints that stick and slip, ends of joints, events, torques that are switched.
 
-use super::{compare, compare_within};
+use super::control::SPRINGPOT;
+use super::{ARM, compare, compare_within};
 
 /// Two sliders one after the other, a spring between them and one to the world, friction that sticks, and a torque that swings.
-const SLIDERS: &str = r#"
+pub(crate) const SLIDERS: &str = r#"
 [robot]
 gravity = [0.4, 0, -9.81]
 [[robot.body]]
@@ -190,4 +191,23 @@ fn torques_that_events_set_follow_from_nothing_else() {
         ("constants.height", 2e-3),
     ];
     compare_within(3e-7, &text, &COLUMNS[..8], &paths);
+}
+
+/// Where a joint that a signal moves jumps to another speed, those that forces move get their share of it.
+#[test]
+fn velocities_that_jump_with_a_prescribed_one() {
+    let text = ARM.replace("torque = { q1 = 0.4,", "prescribed = { q1 = \"0.3 + 0.6*abs(t - 0.11)\" }\ntorque = {");
+    let text = text.replace("start = { q = { q1 = 0.3, q2 = 0.4,", "start = { q = { q2 = 0.4,");
+    let paths = [
+        ("element.tendon.k", 0.1),
+        ("robot.body.two.mass", 5e-3),
+        ("robot.body.three.joint.origin.1", 1e-3),
+        ("robot.body.two.joint.axis.2", 2e-3),
+        ("motion.start.q.q2", 1e-3),
+        ("motion.start.v.q3", 5e-3),
+    ];
+    let remembers = text.replace("law = \"kelvin-voigt\"\nparameters = { k = 40, c = 5 }", SPRINGPOT);
+    for text in [text, remembers] {
+        compare(&text, &["q.q2", "v.q2", "v.q3", "strut.force", "tendon.force", "gripper.y"], &paths);
+    }
 }

@@ -4,12 +4,12 @@ use super::{ARM, compare, compare_within, plan, rows, said, scenario};
 use springpot::Simulation;
 
 /// The arm with a springpot across its second joint under this controller.
-fn arm(controller: &str) -> String {
+pub(crate) fn arm(controller: &str) -> String {
     let text = ARM.replace("torque = { q1 = 0.4, q2 = \"0.5*cos(2*pi*f*t)\" }", controller);
     text.replace("law = \"kelvin-voigt\"\nparameters = { k = 40, c = 5 }", SPRINGPOT)
 }
 
-const SPRINGPOT: &str = "law = \"fractional-kelvin-voigt\"\nparameters = { k = 40, c = 5, alpha = 0.4 }";
+pub(crate) const SPRINGPOT: &str = "law = \"fractional-kelvin-voigt\"\nparameters = { k = 40, c = 5, alpha = 0.4 }";
 
 const COLUMNS: [&str; 9] = ["q.q1", "q.q2", "q.q3", "v.q3", "tau.q1", "tau.q2", "tau.q3", "gripper.y", "gripper.error"];
 

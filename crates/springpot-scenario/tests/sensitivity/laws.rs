@@ -3,7 +3,7 @@
 use crate::{COLUMNS_OF_SLIDER, compare};
 
 /// A mass on a rail, held by one element.
-fn slider(element: &str) -> String {
+pub(crate) fn slider(element: &str) -> String {
     format!(
         r#"
 [robot]

@@ -2,7 +2,9 @@
 
 mod changes;
 mod control;
+mod free;
 mod laws;
+mod steps;
 
 use springpot::Simulation;
 use springpot::law::Catalog;

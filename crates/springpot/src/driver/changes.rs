@@ -102,7 +102,9 @@ impl Driver {
         when.slopes_on(branch, t, &values, &mut slopes);
         let speed = when.jet_on(branch, t, &jets).first;
         let parts = slopes.iter().zip(&rates).map(|(slope, rate)| (slope * rate).abs()).sum::<f64>();
-        let Some(variation) = self.vary(theta, &shown, columns.iter().copied().all(Variation::is_of_motion)) else {
+        let Some(variation) =
+            self.vary(theta, &shown, columns.iter().all(|of| Variation::is_of_motion(&cx.system.model, *of)))
+        else {
             return Ok(None);
         };
         let mut changes = vec![0.0; count];
@@ -124,10 +126,14 @@ impl Driver {
     /// What a row of the step at hand may show.
     pub(super) fn rates(&mut self, cx: Context, of: &[Quantity], shown: &Snapshot) -> Result<Vec<f64>, RunError> {
         use ElementQuantity::{Length, Rate, Stroke};
+        // Between the ends of steps of one size rows have q and v each in its own way.
+        let between = self.has_fixed_steps() && self.step_at_hand().is_some();
         let known = |of: &Quantity| match *of {
             Quantity::Time => Some(1.0),
-            // One degree a joint: coordinates and velocities go together.
-            Quantity::Coordinate(k) => Some(shown.value(Quantity::Velocity(k))),
+            _ if between => None,
+            Quantity::Coordinate(k) => {
+                Some(cx.system.model.coordinate_rate(&shown.evaluation.q, &shown.evaluation.v, k))
+            }
             Quantity::Velocity(k) => Some(shown.value(Quantity::Acceleration(k))),
             Quantity::Element(e, Length | Stroke) => Some(shown.value(Quantity::Element(e, Rate))),
             _ => None,

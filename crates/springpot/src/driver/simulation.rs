@@ -226,7 +226,7 @@ impl Simulation {
             self.cross()?;
         }
         let theta = self.driver.read(self.events.cx(&self.system), t, 0, &mut snapshot)?;
-        let variation = self.driver.vary(theta, &snapshot, Variation::is_of_motion(quantity));
+        let variation = self.driver.vary(theta, &snapshot, Variation::is_of_motion(&self.system.model, quantity));
         let unknown = |all: &Variation| vec![f64::NAN; all.count()];
         Ok(variation.map_or_else(Vec::new, |all| all.values(quantity, &snapshot).unwrap_or_else(|| unknown(all))))
     }
@@ -249,7 +249,8 @@ impl Simulation {
         let t = self.t();
         let theta = self.driver.read(self.events.cx(&self.system), t, 0, &mut snapshot)?;
         let (nq, nv) = (self.system.model.nq(), self.system.model.nv());
-        let Some(variation) = self.driver.vary(theta, &snapshot, true) else { return Ok(Default::default()) };
+        let of_motion = self.system.model.is_one_degree();
+        let Some(variation) = self.driver.vary(theta, &snapshot, of_motion) else { return Ok(Default::default()) };
         let all = |count: usize, of: fn(usize) -> Quantity| {
             let unknown = || vec![f64::NAN; variation.count()];
             (0..count).flat_map(|k| variation.values(of(k), &snapshot).unwrap_or_else(unknown)).collect()

@@ -8,11 +8,10 @@ use crate::collocation::{RADAU_NODES, STAGES};
 use crate::dynamics::Kinematics;
 use crate::equations::context::{Context, Held};
 use crate::equations::control::{Eye, Sampler};
-use crate::equations::{Node, ROW, Variation, VariationState};
+use crate::equations::{Node, Variation, VariationState};
 use crate::methods::solver::Solver;
 use crate::methods::stepper::{Behind, Target, Trial};
 use crate::observe::{Needs, Snapshot};
-use crate::sensitivity::SensitivityError;
 use crate::signal::agenda::FINEST;
 use crate::signal::{self, Agenda};
 use crate::system::Motion;
@@ -128,10 +127,8 @@ impl Driver {
         let Self { sampler, recorder, .. } = self;
         let Recorder { evaluations: [at, ..], equations, variation, .. } = recorder;
         let Some(by) = &cx.system.sensitivity else { return Ok(()) };
-        if !self.solver.stepper().varies() {
-            return Err(SensitivityError::Unknown { what: "steps of one size".into() }.into());
-        }
-        let mut begun = Variation::new(cx.system, by, equations)?;
+        let has_fixed_steps = self.solver.stepper().fixed_step().is_some();
+        let mut begun = Variation::new(cx.system, by, equations, has_fixed_steps)?;
         begun.hold(sampler.as_ref().and_then(|sampler| sampler.held_changes()));
         let a = self.solver.stepper().starts_with().unwrap_or(&at.a);
         begun.begin(equations, Node { t: at.t, q: &at.q, v: &at.v, a })?;
@@ -144,7 +141,8 @@ impl Driver {
         let Self { sampler, recorder, .. } = self;
         let Recorder { evaluations: [at, ..], equations, variation, .. } = recorder;
         let Some(by) = &cx.system.sensitivity else { return Ok(()) };
-        let mut loaded = Variation::new(cx.system, by, equations)?;
+        let has_fixed_steps = self.solver.stepper().fixed_step().is_some();
+        let mut loaded = Variation::new(cx.system, by, equations, has_fixed_steps)?;
         loaded.hold(sampler.as_ref().and_then(|sampler| sampler.held_changes()));
         let a = self.solver.stepper().starts_with().unwrap_or(&at.a);
         let start = Node { t: at.t, q: &at.q, v: &at.v, a };
@@ -554,7 +552,7 @@ impl Driver {
         let Some(by) = &cx.system.sensitivity else { return Ok(theta) };
         let mut derivatives = std::mem::take(&mut snapshot.derivatives);
         derivatives.clear();
-        let is_of_motion = by.columns.iter().all(|column| Variation::is_of_motion(column.of));
+        let is_of_motion = by.columns.iter().all(|column| Variation::is_of_motion(&cx.system.model, column.of));
         let variation = if by.columns.is_empty() { None } else { self.vary(theta, snapshot, is_of_motion) };
         // All parameters of a column stand together.
         for columns in by.columns.chunk_by(|one, next| one.of == next.of) {
@@ -572,12 +570,12 @@ impl Driver {
     /// What parameters change at the row that was read into `snapshot` last, at θ of the step at hand or between two; of the motion alone where
     /// nothing else is asked for.
     pub(super) fn vary(&mut self, theta: Option<f64>, snapshot: &Snapshot, is_of_motion: bool) -> Option<&Variation> {
-        let Self { solver, recorder: Recorder { equations, variation, .. }, step, .. } = self;
+        let Self { solver, recorder, step, .. } = self;
+        recorder.variation.as_ref()?;
+        let within = theta.zip(*step).map(|(theta, step)| (theta, step.size));
+        solver.stepper_mut().vary_within(recorder, within);
+        let Recorder { equations, variation, .. } = recorder;
         let variation = variation.as_deref_mut()?;
-        match (theta, step) {
-            (Some(theta), Some(step)) => solver.stepper_mut().vary_within(variation, theta, step.size),
-            _ => variation.take_start(ROW),
-        }
         if !is_of_motion {
             variation.read(equations, theta, snapshot);
         }

@@ -37,4 +37,4 @@ pub(crate) use scale::Scale;
 pub(crate) use solve::Solve;
 pub(crate) use state::EquationsState;
 pub use steady::SteadyError;
-pub(crate) use variation::{ROW, StepErrors, TANGENTS, Variation, VariationState};
+pub(crate) use variation::{Found, ROW, STAGE, StepErrors, TANGENTS, Told, Variation, VariationState};

@@ -83,14 +83,22 @@ impl Equations {
         self.control.as_mut().map_or(Ok(()), |control| control.change(cx.system, is_end, end))
     }
 
-    /// Takes the step that was worked out, whose `ends` are these, into the past.
+    /// Tells control the `ends` of the step that was worked out.
     ///
     /// # Errors
-    /// [`RunError::ControlChatter`]; where the reference of a controller cannot be followed.
-    pub(crate) fn commit(&mut self, cx: Context, ends: [End; 2], end: f64) -> Result<(), RunError> {
+    /// Where the reference of a controller cannot be followed.
+    pub(crate) fn take_ends(&mut self, cx: Context, ends: [End; 2]) -> Result<(), RunError> {
+        self.control.as_mut().map_or(Ok(()), |control| control.take_ends(cx.system, ends))
+    }
+
+    /// Takes the step that was worked out into the past.
+    ///
+    /// # Errors
+    /// [`RunError::ControlChatter`].
+    pub(crate) fn commit(&mut self, cx: Context, end: f64) -> Result<(), RunError> {
         self.change_branches(cx, true, end)?;
         if let Some(control) = &mut self.control {
-            control.commit(cx.system, ends)?;
+            control.commit();
         }
         self.bank.commit_account();
         Ok(())

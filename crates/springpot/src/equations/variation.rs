@@ -2,7 +2,9 @@
 
 mod control;
 mod energies;
+mod found;
 mod inertias;
+mod one_node;
 mod rows;
 mod saltation;
 mod singular;
@@ -25,7 +27,10 @@ use crate::model::{FrictionLaw, Model};
 use crate::sensitivity::{Seed, Sensitivity, SensitivityError};
 use crate::system::{Motion, System};
 use energies::Works;
+pub(crate) use found::Found;
 use inertias::Inertias;
+use one_node::OneSize;
+pub(crate) use one_node::{STAGE, Told};
 use saltation::Saltation;
 use singular::Singular;
 pub(crate) use sizes::{StepErrors, TANGENTS};
@@ -67,6 +72,8 @@ pub(crate) struct Variation {
     works: Works,
     /// Of what follows from the state, where anything does.
     control: Option<Box<ControlVariation>>,
+    /// What is known of steps of one size, where it takes such.
+    one_size: Option<OneSize>,
 }
 
 /// Change of the forces, in units of the largest, at which they are found.
@@ -120,13 +127,19 @@ pub(crate) struct NodeVariation {
 }
 
 impl Variation {
-    /// Of a run of `system`.
+    /// Of a run of `system`; `has_fixed_steps`: in steps of one size.
     ///
     /// # Errors
     /// What has no derivative.
-    pub(crate) fn new(system: &System, by: &Arc<Sensitivity>, equations: &Equations) -> Result<Self, SensitivityError> {
+    pub(crate) fn new(
+        system: &System,
+        by: &Arc<Sensitivity>,
+        equations: &Equations,
+        has_fixed_steps: bool,
+    ) -> Result<Self, SensitivityError> {
         let extended = by.extended.clone().unwrap_or_else(|| Arc::new(system.clone()));
         check(system)?;
+        let one_size = has_fixed_steps.then(|| OneSize::new(system, by)).transpose()?;
         let (model, count) = (&extended.model, by.parameters.len());
         let (mut own_q, mut own_v) = (Vec::new(), Vec::new());
         for j in system.model.own_joints() {
@@ -211,10 +224,11 @@ impl Variation {
             solve: Solve::default(),
             right: Vec::new(),
             saltation: Saltation::new(count),
-            works: Works::new(by, extended.elements.len()),
+            works: Works::new(by, extended.elements.len(), has_fixed_steps),
             by: by.clone(),
             system: extended.clone(),
             control,
+            one_size,
         })
     }
 
@@ -304,6 +318,9 @@ impl Variation {
 
     /// Sees where the step starts, and what changes of the elements there.
     pub(super) fn see_start(&mut self, equations: &Equations, start: Node) {
+        if self.one_size.is_some() {
+            return self.see_start_of_one(equations, start);
+        }
         let force: Vec<f64> = (0..self.elements.len()).map(|e| equations.force_behind(e)).collect();
         self.see(equations, 0, start, &force);
         self.steer(0, equations, &force);
@@ -314,6 +331,10 @@ impl Variation {
 
     /// Solves M δa = −(K δq + D δv + explicit + Σ g δF) at the start that was seen.
     pub(super) fn accelerate(&mut self, equations: &Equations) {
+        if self.one_size.is_some() {
+            // Where a row asks for them.
+            return;
+        }
         let (count, n, free) = (self.count(), self.nv(), self.of_run(equations.free()));
         let [node, ..] = &mut self.nodes;
         node.a.fill(0.0);
@@ -350,9 +371,8 @@ impl Variation {
 
     /// Looks at node `i` of the step, where the run is at `at`: what its elements measure, and their inputs.
     pub(crate) fn look(&mut self, i: usize, at: Node) {
-        let Self { by, system, own_q, own_v, moves, q, nodes, elements, saltation, workspace, .. } = self;
-        let Saltation { held, .. } = saltation;
-        let (model, node, count) = (&system.model, &mut nodes[i], by.parameters.len());
+        let Self { system, own_q, own_v, moves, q, nodes, workspace, .. } = self;
+        let (model, node) = (&system.model, &mut nodes[i]);
         own_q.iter().zip(at.q).for_each(|(&k, value)| q[k] = *value);
         for (&k, (v, a)) in own_v.iter().zip(at.v.iter().zip(at.a)) {
             (node.v_now[k], node.a_now[k]) = (*v, *a);
@@ -367,10 +387,20 @@ impl Variation {
             element.measure.read_into(model, &node.kinematics, gradient, &mut reading);
             *told = [reading.coordinate, reading.rate];
             element.measure.hessian_of_moving(model, &node.kinematics, moves, workspace, kept);
-            for (bend, line) in bend.iter_mut().zip(kept.chunks_exact(n)) {
-                *bend = own_v.iter().map(|&k| line[k] * node.v_now[k]).sum();
+            // y'_b = Σ_a ∂(∂y/∂q_a)/∂q_b v_a.
+            bend.fill(0.0);
+            for &k in own_v.iter() {
+                let (line, v) = (&kept[k * n..(k + 1) * n], node.v_now[k]);
+                bend.iter_mut().zip(line).for_each(|(bend, h)| *bend += h * v);
             }
         }
+        self.look_at_inputs(i, at.t);
+    }
+
+    /// What changes of the inputs at node `i`, at time t, which follow from time alone or are held.
+    pub(super) fn look_at_inputs(&mut self, i: usize, t: f64) {
+        let Self { by, system, elements, saltation: Saltation { held, .. }, .. } = self;
+        let count = by.parameters.len();
         for element in elements.iter_mut() {
             for blocks in &mut element.inputs {
                 let own = blocks.len() / (ROW + 1);
@@ -390,11 +420,20 @@ impl Variation {
                 if held.input(*element, *input).is_some() {
                     continue;
                 }
-                let (inputs, change) = (system.elements[*element].inputs.len(), by.at(at.t));
+                let (inputs, change) = (system.elements[*element].inputs.len(), by.at(t));
                 let place = ((i * inputs) + input) * count + p;
                 let [values, rates] = &mut elements[*element].inputs;
                 values[place] += change.value;
                 rates[place] += change.first;
+            }
+        }
+        if self.one_size.is_some() {
+            // Whatever follows from the state is sampled.
+            let held = self.control.iter().flat_map(|control| control.held_inputs());
+            for (e, input, by) in held.filter(|(e, input, _)| self.saltation.held.input(*e, *input).is_none()) {
+                let place = (i * self.system.elements[e].inputs.len() + input) * count;
+                let [values, _] = &mut self.elements[e].inputs;
+                values[place..place + count].copy_from_slice(by);
             }
         }
     }
@@ -402,7 +441,8 @@ impl Variation {
     /// Looks at node `i`, where the elements pull with `force`, and sees the slopes there, and what changes where the motion stays.
     pub(crate) fn see(&mut self, equations: &Equations, i: usize, at: Node, force: &[f64]) {
         self.look(i, at);
-        let Self { by, system, own_v, moves, nodes, workspace, saltation: Saltation { held, .. }, inertias, .. } = self;
+        let Self { by, system, own_v, moves, nodes, workspace, saltation, inertias, one_size, .. } = self;
+        let Saltation { held, .. } = saltation;
         let (model, node, count) = (&system.model, &mut nodes[i], by.parameters.len());
         let (slopes, n) = (&mut node.slopes, model.nv());
         rnea_derivatives_of_moving(model, &node.kinematics, &node.a_now, moves, workspace, slopes);
@@ -436,7 +476,11 @@ impl Variation {
                             FrictionLaw::Smooth { speed: width } => add(k, by * ratio * (speed / width).tanh()),
                             FrictionLaw::Sticking => {
                                 let own = own_v.iter().position(|own| *own == k);
-                                add(k, by * ratio.abs() * own.map_or(0.0, |own| equations.sliding(own, at.v[own])));
+                                let direction = |own: usize| match one_size {
+                                    Some(one_size) => one_size.sliding(i, own, at.v[own]),
+                                    None => equations.sliding(own, at.v[own]),
+                                };
+                                add(k, by * ratio.abs() * own.map_or(0.0, direction));
                             }
                         }
                     }
@@ -471,13 +515,21 @@ impl Variation {
 
     /// The motion changes at node `i`, from 1, as where the step starts; places change everywhere by the same.
     pub(crate) fn take_start(&mut self, i: usize) {
-        let [start, others @ ..] = &mut self.nodes;
-        let (node, count) = (&mut others[i - 1], self.by.parameters.len());
-        for &k in &self.own_v {
-            let block = k * count..(k + 1) * count;
-            for (own, start) in [(&mut node.q, &start.q), (&mut node.v, &start.v), (&mut node.a, &start.a)] {
-                own[block.clone()].copy_from_slice(&start[block.clone()]);
-            }
+        self.take_motion(i);
+        self.take(i, |node| &mut node.a);
+    }
+
+    /// The same of places and velocities alone.
+    pub(crate) fn take_motion(&mut self, i: usize) {
+        self.take(i, |node| &mut node.q);
+        self.take(i, |node| &mut node.v);
+    }
+
+    fn take(&mut self, i: usize, of: fn(&mut NodeVariation) -> &mut Vec<f64>) {
+        let ([start, others @ ..], count) = (&mut self.nodes, self.by.parameters.len());
+        let (from, to) = (of(start), of(&mut others[i - 1]));
+        for block in self.own_v.iter().map(|&k| k * count..(k + 1) * count) {
+            to[block.clone()].copy_from_slice(&from[block]);
         }
     }
 
@@ -544,9 +596,13 @@ impl Variation {
     pub(crate) fn ask(&mut self, equations: &Equations) {
         let count = self.count();
         self.works.forget();
+        let nodes = if self.one_size.is_some() { 1 } else { STAGES };
         for (e, ElementVariation { law, stroke, rate, inputs, force, .. }) in self.elements.iter_mut().enumerate() {
-            let told = of_step(count, [stroke, rate], inputs);
-            equations.bank.vary(e, &told, law, force);
+            let told = of_nodes(nodes, count, [stroke, rate], inputs);
+            equations.bank.vary(e, &told, law, &mut force[..nodes * count]);
+        }
+        if self.one_size.is_some() {
+            return;
         }
         if let (Some(control), Some(run)) = (&mut self.control, &equations.control) {
             control.ask(run);
@@ -582,12 +638,14 @@ impl Variation {
     pub(crate) fn commit(&mut self, equations: &Equations) {
         self.foresee(STAGES, equations);
         self.commit_works(equations);
-        let count = self.count();
+        let (count, one_size) = (self.count(), self.one_size.is_some());
         for (e, ElementVariation { law, stroke, rate, inputs, .. }) in self.elements.iter_mut().enumerate() {
             let told = of_step(count, [stroke, rate], inputs);
             equations.bank.commit_variation(e, &told, law);
         }
-        self.commit_singular(equations);
+        if !one_size {
+            self.commit_singular(equations);
+        }
         for ElementVariation { stroke, rate, inputs, .. } in &mut self.elements {
             let last = STAGES * count;
             for blocks in [stroke, rate] {
@@ -600,7 +658,14 @@ impl Variation {
         }
         if let (Some(control), Some(run)) = (&mut self.control, &equations.control) {
             let [nodes @ .., _] = &self.nodes;
-            control.commit(run, nodes.each_ref().map(|node| [&node.q[..], &node.v[..]]));
+            if one_size {
+                control.commit_ends(run, [0, STAGES].map(|i| [&nodes[i].q[..], &nodes[i].v[..]]));
+            } else {
+                control.commit(run, nodes.each_ref().map(|node| [&node.q[..], &node.v[..]]));
+            }
+        }
+        if let Some(OneSize { accelerated: [start, end], .. }) = &mut self.one_size {
+            (*start, *end) = (*end, false);
         }
         self.nodes.swap(0, STAGES);
         self.take_sizes();
@@ -639,9 +704,19 @@ fn at_start<'a>(count: usize, [stroke, rate]: [&'a Vec<f64>; 2], inputs: &'a [Ve
 }
 
 /// What changes of what a law is told of a step, without the row behind.
-fn of_step<'a>(count: usize, [stroke, rate]: [&'a Vec<f64>; 2], inputs: &'a [Vec<f64>; 2]) -> StepVariation<'a> {
-    let step = (STAGES + 1) * count;
-    let inputs = inputs.each_ref().map(|blocks| &blocks[..blocks.len() / (ROW + 1) * (STAGES + 1)]);
+fn of_step<'a>(count: usize, told: [&'a Vec<f64>; 2], inputs: &'a [Vec<f64>; 2]) -> StepVariation<'a> {
+    of_nodes(STAGES, count, told, inputs)
+}
+
+/// The same of a step of so many nodes.
+fn of_nodes<'a>(
+    nodes: usize,
+    count: usize,
+    [stroke, rate]: [&'a Vec<f64>; 2],
+    inputs: &'a [Vec<f64>; 2],
+) -> StepVariation<'a> {
+    let step = (nodes + 1) * count;
+    let inputs = inputs.each_ref().map(|blocks| &blocks[..blocks.len() / (ROW + 1) * (nodes + 1)]);
     StepVariation { count, stroke: &stroke[..step], rate: &rate[..step], inputs, passed: None }
 }
 
@@ -654,9 +729,6 @@ fn felt(model: &Model, joint: usize, v: &[f64]) -> (usize, f64, f64) {
 /// What no derivative is known of.
 fn check(system: &System) -> Result<(), SensitivityError> {
     let unknown = |what: &str| Err(SensitivityError::Unknown { what: what.to_owned() });
-    if !system.model.is_one_degree() {
-        return unknown("joints with quaternions");
-    }
     if !system.control.is_empty() && matches!(system.motion, Motion::Given(_)) {
         return unknown("what follows from the state along a given motion");
     }

@@ -2,7 +2,7 @@
 
 use crate::account::recorder::Recorder;
 use crate::dynamics::Kinematics;
-use crate::equations::Variation;
+use crate::equations::ROW;
 use crate::equations::context::Context;
 use crate::equations::evaluate::Evaluation;
 use crate::equations::{Change, Equations, Look};
@@ -131,17 +131,15 @@ pub(crate) trait Stepper: std::fmt::Debug + Send + Sync {
         Ok(())
     }
 
-    /// Works out what parameters change of the motion at θ of the step at hand, as a row is asked for.
-    fn vary_within(&mut self, _: &mut Variation, _theta: f64, _size: f64) {}
+    /// Works out what parameters change of the motion at θ of the step at hand, whose size is given too, or between two, as a row is asked for: into
+    /// node [`ROW`].
+    fn vary_within(&mut self, recorder: &mut Recorder, _within: Option<(f64, f64)>) {
+        recorder.variation.iter_mut().for_each(|variation| variation.take_start(ROW));
+    }
 
     /// The accelerations that the next step starts with, where those of rows are others: without the share of what is infinite there.
     fn starts_with(&self) -> Option<&[f64]> {
         None
-    }
-
-    /// Whether it works out what parameters change ([`Self::vary`]).
-    fn varies(&self) -> bool {
-        true
     }
 
     /// Takes over what changes where the step starts.

@@ -149,6 +149,14 @@ impl Model {
         }
     }
 
+    /// How fast coordinate `k` of q changes at the velocities v.
+    pub(crate) fn coordinate_rate(&self, q: &[f64], v: &[f64], k: usize) -> f64 {
+        let joint = self.own_joints().find(|&j| self.q_range(j).contains(&k)).expect("a coordinate of a joint");
+        let place = self.q_range(joint);
+        let slopes = self.joint_space(joint).slopes(&q[place.clone()], k - place.start);
+        slopes.iter().zip(&v[self.v_range(joint)]).map(|(slope, v)| slope * v).sum()
+    }
+
     /// The joints that have coordinates of their own.
     pub fn own_joints(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.joint_count()).filter(|&j| self.followed(j).is_none())
@@ -179,7 +187,7 @@ impl Space {
     }
 }
 
-fn vector(v: &[f64]) -> Vec3 {
+pub(super) fn vector(v: &[f64]) -> Vec3 {
     Vec3([v[0], v[1], v[2]])
 }
 
@@ -220,7 +228,7 @@ fn wrapped(angle: f64) -> f64 {
 }
 
 /// V(ω) u with V = 1 + (1 − cos θ)/θ² \[ω\]× + (θ − sin θ)/θ³ \[ω\]×²: how far a constant twist (u, ω) leads in one second.
-fn left_jacobian(omega: Vec3, u: Vec3) -> Vec3 {
+pub(super) fn left_jacobian(omega: Vec3, u: Vec3) -> Vec3 {
     let square = omega.dot(omega);
     let theta = square.sqrt();
     let (first, second) = if theta < 1e-2 {
@@ -250,7 +258,7 @@ fn inverse_left_jacobian(omega: Vec3, u: Vec3) -> Vec3 {
 
 /// A and B of [`Model::tangent_rate_into`] for a turn of θ: with α = (θ/2) cot(θ/2) and β = (θ/2)²/sin²(θ/2),
 /// A = (2 (1 − α) + (α − β)/2)/θ², B = (1 − α + (α − β)/2)/θ⁴.
-fn bracket_factors(theta: f64) -> (f64, f64) {
+pub(super) fn bracket_factors(theta: f64) -> (f64, f64) {
     let square = theta * theta;
     if theta < 0.3 {
         // 1/12 + O(θ⁴) and −1/720 + O(θ²), from the series of α and β.
@@ -263,6 +271,22 @@ fn bracket_factors(theta: f64) -> (f64, f64) {
     let (alpha, beta) = (half / half.tan(), (half / half.sin()).powi(2));
     let spread = 0.5 * (alpha - beta);
     ((2.0 * (1.0 - alpha) + spread) / square, (1.0 - alpha + spread) / (square * square))
+}
+
+/// Their derivatives by θ²: with α and β as there, dα/dθ² = (α − β)/2θ² and dβ/dθ² = β (1 − α)/θ².
+pub(super) fn bracket_slopes(theta: f64) -> [f64; 2] {
+    let square = theta * theta;
+    if theta < 0.3 {
+        let second = -square * (1.0 / 15_120.0 + square * (1.0 / 201_600.0 + square / 3_991_680.0));
+        let fourth = -1.0 / 15_120.0 - square * (1.0 / 201_600.0 + square / 3_991_680.0);
+        return [second, fourth];
+    }
+    let half = 0.5 * theta;
+    let (alpha, beta) = (half / half.tan(), (half / half.sin()).powi(2));
+    let [by_alpha, by_beta] = [0.5 * (alpha - beta) / square, beta * (1.0 - alpha) / square];
+    let (second, fourth) = bracket_factors(theta);
+    let spread = 0.5 * (by_alpha - by_beta);
+    [(spread - 2.0 * by_alpha - second) / square, ((spread - by_alpha) / square - 2.0 * fourth) / square]
 }
 
 #[cfg(test)]

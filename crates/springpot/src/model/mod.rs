@@ -32,6 +32,7 @@ mod numbering;
 mod robot;
 mod spec;
 mod state;
+mod turns;
 #[cfg(feature = "urdf")]
 pub mod urdf;
 mod validate;
@@ -46,3 +47,4 @@ pub use labels::Label;
 pub use robot::{DescribedJoint, Model};
 pub use spec::{Anchor, BodySpec, FRICTION_SPEED, FrictionLaw, JointPart, JointSpec, Limits, Mimic, Parent};
 pub use state::StateError;
+pub(crate) use turns::{FreeTurn, Turned, add_turned};

@@ -210,6 +210,8 @@ impl Recorder {
     /// # Errors
     /// [`RunError::ControlChatter`]; where the reference of a controller cannot be followed.
     pub(crate) fn commit(&mut self, cx: Context) -> Result<(), RunError> {
+        let ends = [0, STAGES].map(|k| &self.evaluations[k]).map(|end| (end.t, &end.q[..], &end.v[..]));
+        self.equations.take_ends(cx, ends)?;
         if let Some(variation) = &mut self.variation {
             variation.commit(&self.equations);
         }
@@ -223,8 +225,7 @@ impl Recorder {
             (dissipated, supplied) = (dissipated + until.0, supplied + until.1);
         }
         let balance = self.balance_of(end, [stored, dissipated, supplied], actuators, joints);
-        let ends = [0, STAGES].map(|k| &self.evaluations[k]).map(|end| (end.t, &end.q[..], &end.v[..]));
-        self.equations.commit(cx, ends, self.settings.end)?;
+        self.equations.commit(cx, self.settings.end)?;
         self.ledger.turnover.take(&balance);
         self.ledger.actuators += actuators;
         self.ledger.joints += joints;

@@ -54,8 +54,9 @@ pub(crate) struct ControlRun {
     input_slopes: Vec<InputSlopes>,
     changing: Changing,
     spare: Vec<f64>,
-    /// Errors at both ends of a step whose nodes are not known.
+    /// Errors at both ends of a step whose nodes are not known, and when it starts and ends, s.
     ends: [Vec<[f64; 2]>; 2],
+    span: [f64; 2],
     /// Whether a step is known at its nodes, not at its ends alone.
     knows_nodes: bool,
     known: Known,
@@ -226,6 +227,7 @@ impl ControlRun {
             changing: Changing::default(),
             spare: Vec::new(),
             ends: Default::default(),
+            span: [0.0; 2],
             knows_nodes: !has_fixed_steps,
             known: Known::default(),
             row: AtRow { aim: Aim::default(), kinematics: Kinematics::new(model) },

@@ -368,40 +368,53 @@ impl ControlRun {
         }
     }
 
-    /// Takes the step into the past, whose ends are these.
-    ///
-    /// # Errors
-    /// Where the reference cannot be followed.
-    pub(crate) fn commit(&mut self, system: &System, ends: [End; 2]) -> Result<(), RunError> {
+    /// Takes the step into the past; where its nodes are not known it was told its ends.
+    pub(crate) fn commit(&mut self) {
         if self.knows_nodes {
             self.terms.iter_mut().for_each(super::Term::commit);
             self.nodes.swap(0, STAGES);
             self.take_largest();
+            return;
+        }
+        for m in 0..self.terms.len() {
+            let (h, errors, integrand) = self.end_of_term(m);
+            self.terms[m].commit_ends(h, errors, integrand);
+        }
+    }
+
+    /// Takes the ends of a step whose nodes are not known, as terms remember errors there.
+    ///
+    /// # Errors
+    /// Where the reference cannot be followed.
+    pub(crate) fn take_ends(&mut self, system: &System, ends: [End; 2]) -> Result<(), RunError> {
+        if self.knows_nodes || self.terms.is_empty() {
             return Ok(());
         }
-        if self.terms.is_empty() {
-            return Ok(());
-        }
+        let [(from, ..), (to, ..)] = ends;
+        self.span = [from, to];
         for (k, (t, q, v)) in ends.into_iter().enumerate() {
             self.aim_at(system, t, 0)?;
             let Self { terms, nodes, ends, .. } = &mut *self;
             ends[k].clear();
             ends[k].extend(terms.iter().map(|term| nodes[0].aim.error(&system.model, term.law.velocity, q, v)));
         }
-        let ([(from, ..), (to, ..)], errors) = (ends, &self.ends);
-        let h = to - from;
-        for (m, term) in self.terms.iter_mut().enumerate() {
-            let joint = self.joints.iter().find(|joint| joint.velocity == term.law.velocity);
-            let mode = joint.map(|joint| joint.mode).unwrap_or_default();
-            let Bound::At(sign) = mode.bound else {
-                term.commit_ends(h, errors.each_ref().map(|errors| errors[m]), Integrand::Runs);
-                continue;
-            };
-            let outward = f64::from(sign) * errors[0][m][0] > 0.0;
-            let integrand = if outward { Integrand::Frozen } else { Integrand::Runs };
-            term.commit_ends(h, errors.each_ref().map(|errors| errors[m]), integrand);
-        }
         Ok(())
+    }
+
+    /// Whether errors are remembered.
+    pub(crate) fn remembers(&self) -> bool {
+        !self.terms.is_empty()
+    }
+
+    /// What term `m` takes in from a step whose ends were told: its size, the error and its rate at both ends, and what an integral does.
+    pub(super) fn end_of_term(&self, m: usize) -> (f64, [[f64; 2]; 2], Integrand) {
+        let ([from, to], errors) = (self.span, self.ends.each_ref().map(|errors| errors[m]));
+        let joint = self.joints.iter().find(|joint| joint.velocity == self.terms[m].law.velocity);
+        let integrand = match joint.map(|joint| joint.mode).unwrap_or_default().bound {
+            Bound::At(sign) if f64::from(sign) * errors[0][0] > 0.0 => Integrand::Frozen,
+            _ => Integrand::Runs,
+        };
+        (to - from, errors, integrand)
     }
 }
 

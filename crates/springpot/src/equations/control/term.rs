@@ -212,10 +212,21 @@ impl Term {
 
     /// Takes a step of size `h` into the past of which the ends alone are known: error and its rate there.
     pub(super) fn commit_ends(&mut self, h: f64, ends: [[f64; 2]; 2], integrand: Integrand) {
+        let polynomial = self.polynomial_of_ends(h, ends, integrand);
+        let [_, [e1, v1]] = ends;
+        if !self.is_integral() {
+            return self.take_past(&polynomial, e1, v1);
+        }
+        let end = self.kept.integral + polynomial.travel();
+        let rate = polynomial.rate(1.0);
+        self.take_past(&polynomial, end, rate);
+    }
+
+    /// How fast the stroke goes in such a step.
+    fn polynomial_of_ends(&self, h: f64, ends: [[f64; 2]; 2], integrand: Integrand) -> RatePolynomial {
         let [[e0, v0], [e1, v1]] = ends;
         if !self.is_integral() {
-            let polynomial = RatePolynomial::hermite(h, [e0, e1], [v0, v1]);
-            return self.take_past(&polynomial, e1, v1);
+            return RatePolynomial::hermite(h, [e0, e1], [v0, v1]);
         }
         let mut polynomial = RatePolynomial { h, u: [0.0; 4] };
         if integrand == Integrand::Runs {
@@ -223,9 +234,7 @@ impl Term {
             let (d, s0, s1) = (e1 - e0, h * v0, h * v1);
             polynomial.u = [e0, s0, 3.0 * d - 2.0 * s0 - s1, s0 + s1 - 2.0 * d];
         }
-        let end = self.kept.integral + polynomial.travel();
-        let rate = polynomial.rate(1.0);
-        self.take_past(&polynomial, end, rate);
+        polynomial
     }
 
     fn take_past(&mut self, polynomial: &RatePolynomial, stroke: f64, rate: f64) {

@@ -161,9 +161,6 @@ impl ControlVariation {
         if run.compensates && run.joints.iter().any(|joint| joint.limit.rate.is_finite()) {
             return unknown("limits of rates of forces that take the elements off".to_owned());
         }
-        if !run.knows_nodes {
-            return unknown("control in steps of one size".to_owned());
-        }
         let each = |of: &dyn Fn(&Seed) -> f64| -> Vec<f64> {
             by.parameters.iter().map(|parameter| parameter.seeds.iter().map(of).sum()).collect()
         };
@@ -405,6 +402,17 @@ impl ControlVariation {
             self.follow(run, motion);
         }
         self.terms.iter_mut().zip(&run.terms).for_each(|(own, term)| own.commit(term));
+        self.nodes.swap(0, STAGES);
+    }
+
+    /// The same of a step of which the ends alone are known, where the motion changes by these blocks; the run was told them.
+    pub(crate) fn commit_ends(&mut self, run: &ControlRun, motion: [[&[f64]; 2]; 2]) {
+        for m in 0..self.terms.len() {
+            let Some((joint, _)) = self.joint_of(run, m) else { continue };
+            let ends = [0, STAGES].into_iter().zip(motion).map(|(i, motion)| self.error(i, joint, motion));
+            let ends: Vec<_> = ends.collect();
+            self.terms[m].commit_ends(&run.terms[m], run.end_of_term(m), &ends);
+        }
         self.nodes.swap(0, STAGES);
     }
 

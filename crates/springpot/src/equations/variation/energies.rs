@@ -57,7 +57,8 @@ struct Flows {
 }
 
 impl Works {
-    pub(super) fn new(by: &Sensitivity, elements: usize) -> Self {
+    /// Of steps of one size, whose flows are told at their ends alone, nothing is kept.
+    pub(super) fn new(by: &Sensitivity, elements: usize, has_fixed_steps: bool) -> Self {
         let count = by.parameters.len();
         let asks = |of: Quantity| match of {
             Quantity::Element(_, of) => matches!(of, ElementQuantity::Dissipated | ElementQuantity::Input),
@@ -68,7 +69,7 @@ impl Works {
         let each = || (0..elements).map(|_| [blocks(), blocks()]).collect();
         Self {
             // Who names no columns asks for any of them.
-            is_kept: by.columns.is_empty() || by.columns.iter().any(|column| asks(column.of)),
+            is_kept: !has_fixed_steps && (by.columns.is_empty() || by.columns.iter().any(|column| asks(column.of))),
             done: WorksDone { elements: each(), joints: blocks(), origin: blocks(), crossed: None },
             flows: None,
             row: (each(), blocks()),
@@ -275,12 +276,15 @@ impl Variation {
         let along = |slopes: &[f64], blocks: &[f64], p: usize| -> f64 {
             slopes.iter().enumerate().map(|(k, slope)| slope * blocks[k * count + p]).sum()
         };
-        // (M v)·δv + (Cᵀ v)·δq, since Ṁ = C + Cᵀ.
+        // (M v)·δv + (Cᵀ v)·δq, since Ṁ = C + Cᵀ; of joints that turn freely, whose axes turn along, with v ×* M v.
         let v = &node.v_now;
         let coriolis = coriolis(model, &node.kinematics);
         let sum = |entry: &dyn Fn(usize) -> f64| -> f64 { v.iter().enumerate().map(|(c, v)| entry(c) * v).sum() };
         let momentum: Vec<f64> = (0..n).map(|k| sum(&|c| node.slopes.d_a[k * n + c])).collect();
-        let bent: Vec<f64> = (0..n).map(|k| sum(&|c| coriolis[c * n + k])).collect();
+        let mut bent: Vec<f64> = (0..n).map(|k| sum(&|c| coriolis[c * n + k])).collect();
+        for turn in model.free_turns() {
+            turn.add_moment(v, &momentum, &mut bent);
+        }
         let weights = gravity(model, &node.kinematics);
         let of_inertias = self.of_seeds(|seed| match seed {
             Seed::Inertia(change) => kinetic_energy(change, &node.kinematics),

@@ -4,14 +4,52 @@ use super::{ElementVariation, ROW, Variation, of_step};
 use crate::dynamics::point_jacobian;
 use crate::equations::assembly::Equations;
 use crate::equations::node::Node;
+use crate::law::Point;
 use crate::law::variation::{ObservationVariation, PointVariation};
+use crate::model::Model;
 use crate::observe::{ElementQuantity, EnergyQuantity, Quantity, Snapshot};
 use crate::sensitivity::Seed;
 
+impl ElementVariation {
+    /// What it is told of node `i`, of the step at hand where it is within one.
+    pub(super) fn told(&self, count: usize, i: usize, theta: Option<f64>) -> PointVariation<'_> {
+        let Self { stroke, rate, inputs, .. } = self;
+        let blocks = inputs.each_ref().map(|blocks| {
+            let own = blocks.len() / (ROW + 1);
+            &blocks[i * own..(i + 1) * own]
+        });
+        PointVariation {
+            stroke: &stroke[i * count..(i + 1) * count],
+            rate: &rate[i * count..(i + 1) * count],
+            inputs: blocks,
+            step: theta.map(|_| of_step(count, [stroke, rate], inputs)),
+            passed: None,
+        }
+    }
+}
+
 impl Variation {
     /// Whether what changes of a quantity is what changes of the motion alone.
-    pub(crate) fn is_of_motion(of: Quantity) -> bool {
-        matches!(of, Quantity::Time | Quantity::Coordinate(_) | Quantity::Velocity(_) | Quantity::Acceleration(_))
+    pub(crate) fn is_of_motion(model: &Model, of: Quantity) -> bool {
+        match of {
+            Quantity::Time | Quantity::Velocity(_) | Quantity::Acceleration(_) => true,
+            // Of a quaternion it is what changes of the turn, seen from where that is.
+            Quantity::Coordinate(_) => model.is_one_degree(),
+            _ => false,
+        }
+    }
+
+    /// What changes of coordinate `k` of the run at the row.
+    fn coordinate(&self, k: usize) -> Vec<f64> {
+        let (count, model, node, place) = (self.count(), &self.system.model, &self.nodes[ROW], self.own_q[k]);
+        let joint = model.own_joints().find(|&j| model.q_range(j).contains(&place)).expect("a coordinate of a joint");
+        let (q, v) = (model.q_range(joint), model.v_range(joint));
+        let slopes = model.joint_space(joint).slopes(&node.q_now[q.clone()], place - q.start);
+        let mut sum = vec![0.0; count];
+        for (slope, block) in slopes.iter().zip(node.q[v.start * count..v.end * count].chunks_exact(count.max(1))) {
+            sum.iter_mut().zip(block).for_each(|(sum, turn)| *sum += slope * turn);
+        }
+        sum
     }
 
     /// Works out what changes at a row where the run is at `snapshot`, whose motion changes as node [`ROW`] has it: at θ of the step at hand, or
@@ -30,37 +68,35 @@ impl Variation {
         self.feed_back(ROW);
         self.push_at(ROW, theta, equations);
         self.read_works(equations, theta);
-        let count = self.count();
         for e in 0..self.elements.len() {
             self.measure(e, ROW);
-            let ElementVariation { law, stroke, rate, inputs, row: [force, stored, derivative], told: tells, .. } =
-                &mut self.elements[e];
-            let own = |blocks: &'_ Vec<f64>| blocks.len() / (ROW + 1) * ROW;
-            let [values, rates] = &*inputs;
-            let told = PointVariation {
-                stroke: &stroke[ROW * count..],
-                rate: &rate[ROW * count..],
-                inputs: [&values[own(values)..], &rates[own(rates)..]],
-                step: theta.map(|_| of_step(count, [stroke, rate], inputs)),
-                passed: None,
-            };
-            force.fill(0.0);
-            stored.fill(0.0);
-            derivative.fill(0.0);
-            tells.clear();
-            let mut sum = ObservationVariation { force, stored, derivative, told: tells };
-            let point = evaluation.elements[e].point(evaluation.t);
-            match theta {
-                Some(theta) => equations.bank.vary_at(e, (theta, &point), &told, law, &mut sum),
-                None => equations.bank.vary_now(e, &point, &told, law, &mut sum),
-            }
-            if self.singular.is_there {
-                let from = evaluation.t;
-                let [change, ..] = self.singular_at(equations, e, from, snapshot);
-                let [force, ..] = &mut self.elements[e].row;
-                force.iter_mut().zip(change).for_each(|(force, change)| *force += change);
-            }
+            self.observe(equations, (e, ROW), theta, &evaluation.elements[e].point(evaluation.t));
         }
+    }
+
+    /// What changes of element `e` at node `i`, at θ of the step at hand or between two, where it is told `at`; strokes, rates and inputs there are known.
+    pub(super) fn observe(&mut self, equations: &Equations, (e, i): (usize, usize), theta: Option<f64>, at: &Point) {
+        let count = self.count();
+        let mut row = std::mem::take(&mut self.elements[e].row);
+        row.iter_mut().for_each(|blocks| {
+            blocks.clear();
+            blocks.resize(count, 0.0);
+        });
+        let mut tells = std::mem::take(&mut self.elements[e].told);
+        tells.clear();
+        let (own, [force, stored, derivative]) = (&self.elements[e], &mut row);
+        let mut sum = ObservationVariation { force, stored, derivative, told: &mut tells };
+        let told = own.told(count, i, theta);
+        match theta {
+            Some(theta) => equations.bank.vary_at(e, (theta, at), &told, &own.law, &mut sum),
+            None => equations.bank.vary_now(e, at, &told, &own.law, &mut sum),
+        }
+        if self.singular.is_there {
+            let [change, ..] = self.singular_at(equations, (e, i), at.t, at);
+            let [force, ..] = &mut row;
+            force.iter_mut().zip(change).for_each(|(force, change)| *force += change);
+        }
+        (self.elements[e].row, self.elements[e].told) = (row, tells);
     }
 
     /// What changes of a quantity at the row that was read last, parameter by parameter, no number where that is lost; `None` where nothing is known
@@ -85,8 +121,9 @@ impl Variation {
         };
         Some(match quantity {
             Quantity::Time => vec![0.0; count],
-            // One degree a joint: coordinates and velocities go together.
-            Quantity::Coordinate(k) => of_velocity(&node.q, k),
+            // Of joints of one degree coordinates and velocities go together.
+            Quantity::Coordinate(k) if model.is_one_degree() => of_velocity(&node.q, k),
+            Quantity::Coordinate(k) => self.coordinate(k),
             Quantity::Velocity(k) => of_velocity(&node.v, k),
             Quantity::Acceleration(k) => of_velocity(&node.a, k),
             Quantity::Torque(k) if snapshot.evaluation.driven[k].is_some() => {

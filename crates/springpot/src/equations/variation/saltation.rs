@@ -11,7 +11,7 @@ use crate::equations::evaluate::Evaluation;
 use crate::equations::node::Node;
 use crate::law::{InputValue, Network, Point};
 use crate::sensitivity::{Lost, Seed, SensitivityError, Switched};
-use crate::system::{Action, Event, Setting};
+use crate::system::{Action, Event, Motion, Setting};
 use serde::{Deserialize, Serialize};
 
 /// Times of one change that differ by less than this share of them are one.
@@ -109,7 +109,8 @@ impl Variation {
         self.saltation.lost[p].get_or_insert_with(|| Lost { parameter: p, t, why: why.to_owned() });
     }
 
-    fn lose_all(&mut self, t: f64, why: &str) {
+    /// Derivatives by all parameters end at `t`.
+    pub(crate) fn lose_all(&mut self, t: f64, why: &str) {
         (0..self.count()).for_each(|p| self.lose(p, t, why));
     }
 
@@ -307,7 +308,7 @@ impl Variation {
         let arrived = self.saltation.arrived.take();
         let a = arrived.as_deref().unwrap_or(a);
         if jump(v, v_after, &|k| equations.free().contains(&k)) {
-            self.lose_all(start.t, "velocities jump with that of a joint that a signal moves");
+            self.follow_jump(start.t, [v, v_after]);
         }
         match self.saltation.later.take() {
             Some(later) => {
@@ -332,9 +333,39 @@ impl Variation {
             control.settle(run, start.t, [&node.q, &node.v])?;
         }
         self.see_start(equations, start);
+        if let Some(one_size) = &mut self.one_size {
+            one_size.accelerated = [false; 2];
+            return Ok(());
+        }
         self.accelerate(equations);
         self.restart_singular(equations);
         Ok(())
+    }
+
+    /// Velocities that forces move jump at `t`, from before to after, with those of joints that signals move: M_ff Δv_f = −M_fp Δv_p.
+    ///
+    /// δΔv_f = −M_ff⁻¹ (δM Δv)_f, at a time that no parameter moves; where one does, strokes go on in another way from there on.
+    fn follow_jump(&mut self, t: f64, [before, after]: [&[f64]; 2]) {
+        let later = self.saltation.later.clone().unwrap_or_default();
+        for p in (0..later.len()).filter(|p| later[*p] != 0.0) {
+            self.lose(p, t, "velocities jump with that of a joint that a signal moves, at a time that it moves");
+        }
+        let (count, n) = (self.count(), self.nv());
+        let Motion::Forward(forward) = &self.system.motion else { return };
+        let free = forward.free_velocities(&self.system.model);
+        let mut jump = vec![0.0; n];
+        for (&k, (before, after)) in self.own_v.iter().zip(before.iter().zip(after)) {
+            jump[k] = after - before;
+        }
+        let owed = self.change_of_mass(&jump);
+        let mut change = vec![0.0; n * count];
+        let [start, ..] = &self.nodes;
+        if !self.solve.factor_part(&start.slopes.d_a, n, &free) {
+            return self.lose_all(t, "velocities jump with that of a joint that a signal moves");
+        }
+        self.solve_free(&free, &owed, &mut change);
+        let [start, ..] = &mut self.nodes;
+        start.v.iter_mut().zip(change).for_each(|(v, change)| *v += change);
     }
 
     /// How much later what was crossed last comes, s, where that was at `t`.
@@ -348,6 +379,10 @@ impl Variation {
     /// What friction holds stays at rest.
     pub(super) fn hold_still(&mut self, equations: &Equations) {
         let count = self.count();
+        if self.one_size.is_some() {
+            // Steps of one size find anew what is held in each.
+            return;
+        }
         for (k, &row) in self.own_v.iter().enumerate() {
             if equations.holds(k) {
                 self.nodes[0].v[row * count..(row + 1) * count].fill(0.0);

@@ -12,8 +12,7 @@ use crate::collocation::STAGES;
 use crate::dynamics::{Kinematics, RneaDerivatives, rnea_at_into};
 use crate::elements::Forces;
 use crate::equations::assembly::{Equations, singular_parts};
-use crate::law::Term;
-use crate::law::variation::PointVariation;
+use crate::law::{Point, Term};
 use crate::observe::Snapshot;
 use crate::sensitivity::Seed;
 use serde::{Deserialize, Serialize};
@@ -47,6 +46,7 @@ pub(super) struct Share {
 /// What outlasts a step: whether the accelerations at its start are without their share; F and δF at the end of the last one.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(crate) struct SingularState {
+    is_there: bool,
     starts_regular: bool,
     before: Vec<(f64, Vec<f64>)>,
 }
@@ -66,14 +66,18 @@ impl Singular {
 
     pub(super) fn save(&self, count: usize) -> SingularState {
         let before = |own: &Share| (own.force[0], own.force_change[..count].to_vec());
-        SingularState { starts_regular: self.starts_regular, before: self.elements.iter().map(before).collect() }
+        SingularState {
+            is_there: self.is_there,
+            starts_regular: self.starts_regular,
+            before: self.elements.iter().map(before).collect(),
+        }
     }
 
     pub(super) fn load(&mut self, state: SingularState, count: usize) -> bool {
         if state.before.len() != self.elements.len() || state.before.iter().any(|(_, own)| own.len() != count) {
             return false;
         }
-        self.starts_regular = state.starts_regular;
+        (self.is_there, self.starts_regular) = (state.is_there, state.starts_regular);
         for (own, (force, change)) in self.elements.iter_mut().zip(state.before) {
             own.force[0] = force;
             own.force_change[..count].copy_from_slice(&change);
@@ -113,52 +117,73 @@ impl Variation {
             return;
         }
         let (count, n, free) = (self.count(), self.nv(), self.of_run(equations.free()));
-        let Self { system, by, nodes: [start, ..], singular, solve, workspace, .. } = self;
-        let tau = &mut vec![0.0; n];
-        let model = &system.model;
-        let regular = !free.is_empty() && solve.factor_part(&start.slopes.d_a, n, &free);
-        let mut still = Kinematics::new(model);
-        still.update_velocity(model, &start.q_now, &vec![0.0; n]);
-        let mut rest = RneaDerivatives::new(model);
-        let mut turned = RneaDerivatives::new(model);
-        Forces::default().inverse_dynamics_derivatives_into(model, &still, &vec![0.0; n], workspace, &mut rest);
+        let regular = {
+            let Self { nodes: [start, ..], solve, .. } = self;
+            !free.is_empty() && solve.factor_part(&start.slopes.d_a, n, &free)
+        };
         let mut right = Vec::new();
-        for (e, Share { of_force, change, .. }) in singular.elements.iter_mut().enumerate() {
-            of_force.fill(0.0);
-            change.fill(0.0);
-            if !regular {
-                continue;
-            }
-            let [gradient, _] = &start.gradients[e];
-            right.clear();
-            right.extend(free.iter().map(|&k| -gradient[k]));
-            solve.solve(&mut right);
-            free.iter().zip(&right).for_each(|(&k, x)| of_force[k] = *x);
-            Forces::default().inverse_dynamics_derivatives_into(model, &still, of_force, workspace, &mut turned);
-            for (p, parameter) in by.parameters.iter().enumerate() {
-                let mut owed = vec![0.0; n];
-                for (k, owed) in owed.iter_mut().enumerate() {
-                    for c in 0..n {
-                        let at = k * n + c;
-                        let by_place = start.hessians[e][at] + turned.d_q[at] - rest.d_q[at];
-                        *owed += by_place * start.q[c * count + p];
-                    }
-                }
-                for seed in &parameter.seeds {
-                    if let Seed::Inertia(inertia) = seed {
-                        let mut add = |a: &[f64], sign: f64| {
-                            rnea_at_into(inertia, &still, &start.q_now, a, &[], workspace, tau);
-                            owed.iter_mut().zip(&*tau).for_each(|(owed, tau)| *owed += sign * tau);
-                        };
-                        add(of_force, 1.0);
-                        add(&vec![0.0; n], -1.0);
-                    }
-                }
+        for e in 0..self.elements.len() {
+            let mut own = std::mem::take(&mut self.singular.elements[e]);
+            own.of_force.fill(0.0);
+            own.change.fill(0.0);
+            if regular {
                 right.clear();
-                right.extend(free.iter().map(|&k| -owed[k]));
-                solve.solve(&mut right);
-                free.iter().zip(&right).for_each(|(&k, x)| change[k * count + p] = *x);
+                right.extend(free.iter().map(|&k| -self.nodes[0].gradients[e][0][k]));
+                self.solve.solve(&mut right);
+                free.iter().zip(&right).for_each(|(&k, x)| own.of_force[k] = *x);
+                let mut owed = self.change_of_mass(&own.of_force);
+                let [start, ..] = &self.nodes;
+                for (k, owed) in owed.chunks_exact_mut(count.max(1)).enumerate() {
+                    for (c, changes) in start.q.chunks_exact(count.max(1)).enumerate() {
+                        let bend = start.hessians[e][k * n + c];
+                        owed.iter_mut().zip(changes).for_each(|(owed, change)| *owed += bend * change);
+                    }
+                }
+                self.solve_free(&free, &owed, &mut own.change);
             }
+            self.singular.elements[e] = own;
+        }
+    }
+
+    /// δM a where the step starts, velocity by velocity in blocks: ∂(M a)/∂q δq + ∂M/∂θ a.
+    pub(super) fn change_of_mass(&mut self, a: &[f64]) -> Vec<f64> {
+        let (count, n) = (self.count(), self.nv());
+        let Self { system, by, nodes: [start, ..], workspace, .. } = self;
+        let (model, tau) = (&system.model, &mut vec![0.0; n]);
+        let (mut still, none) = (Kinematics::new(model), vec![0.0; n]);
+        still.update_velocity(model, &start.q_now, &none);
+        let [mut rest, mut turned] = [RneaDerivatives::new(model), RneaDerivatives::new(model)];
+        Forces::default().inverse_dynamics_derivatives_into(model, &still, &none, workspace, &mut rest);
+        Forces::default().inverse_dynamics_derivatives_into(model, &still, a, workspace, &mut turned);
+        let mut sum = vec![0.0; n * count];
+        for (k, sum) in sum.chunks_exact_mut(count.max(1)).enumerate() {
+            for (c, changes) in start.q.chunks_exact(count.max(1)).enumerate() {
+                let by_place = turned.d_q[k * n + c] - rest.d_q[k * n + c];
+                sum.iter_mut().zip(changes).for_each(|(sum, change)| *sum += by_place * change);
+            }
+        }
+        for (p, parameter) in by.parameters.iter().enumerate() {
+            for seed in &parameter.seeds {
+                if let Seed::Inertia(inertia) = seed {
+                    let mut add = |a: &[f64], sign: f64| {
+                        rnea_at_into(inertia, &still, &start.q_now, a, &[], workspace, tau);
+                        tau.iter().enumerate().for_each(|(k, tau)| sum[k * count + p] += sign * tau);
+                    };
+                    add(a, 1.0);
+                    add(&none, -1.0);
+                }
+            }
+        }
+        sum
+    }
+
+    /// Writes −M⁻¹ of the blocks `owed`, over the velocities `free`, whose part of M is factored, to `out`.
+    pub(super) fn solve_free(&mut self, free: &[usize], owed: &[f64], out: &mut [f64]) {
+        let count = self.count();
+        let mut right: Vec<f64> = free.iter().flat_map(|&k| &owed[k * count..(k + 1) * count]).map(|x| -x).collect();
+        self.solve.solve_rows(&mut right, count);
+        for (own, &k) in right.chunks_exact(count.max(1)).zip(free) {
+            out[k * count..(k + 1) * count].copy_from_slice(own);
         }
     }
 
@@ -201,7 +226,8 @@ impl Variation {
 
     /// Adds the share of singular forces to what changes of the motion at a row, at θ of the step or between two.
     pub(super) fn move_row(&mut self, equations: &Equations, theta: Option<f64>, snapshot: &Snapshot) {
-        if !self.singular.is_there || (theta.is_none() && !self.singular.starts_regular) {
+        let is_apart = theta.is_some() || self.singular.starts_regular;
+        if !self.singular.is_there || !is_apart || self.one_size.is_some() {
             return;
         }
         let (count, t) = (self.count(), snapshot.evaluation.t);
@@ -213,10 +239,11 @@ impl Variation {
                 let parts = singular_parts(&term, from, t);
                 force.iter_mut().zip(parts).for_each(|(sum, part)| *sum += part);
             });
-            let changes = self.singular_at(equations, e, from, snapshot);
+            let changes = self.singular_at(equations, (e, ROW), from, &point);
             let Share { of_force, change, .. } = &self.singular.elements[e];
             let row = &mut self.nodes[ROW];
             for (k, share) in of_force.iter().enumerate() {
+                let turns_by_itself = self.system.model.coordinate_of(k).is_some();
                 for p in 0..count {
                     let block = k * count + p;
                     let [value, once, twice] =
@@ -224,29 +251,34 @@ impl Variation {
                     row.a[block] += value;
                     if theta.is_some() {
                         row.v[block] += once;
-                        row.q[block] += twice;
+                        // Of joints that turn freely the turn follows from their velocities.
+                        if turns_by_itself {
+                            row.q[block] += twice;
+                        }
                     }
                 }
             }
         }
     }
 
-    /// What changes of the singular forces of element `e` at a row, and of their integrals since `from`.
-    pub(super) fn singular_at(&self, equations: &Equations, e: usize, from: f64, snapshot: &Snapshot) -> [Vec<f64>; 3] {
-        let count = self.count();
-        let mut sums = [(); 3].map(|()| vec![0.0; count]);
-        let ElementVariation { law, stroke, rate, inputs: [values, rates], .. } = &self.elements[e];
-        let own = |blocks: &[f64]| blocks.len() / (ROW + 1) * ROW;
-        let told = PointVariation {
-            stroke: &stroke[ROW * count..],
-            rate: &rate[ROW * count..],
-            inputs: [&values[own(values)..], &rates[own(rates)..]],
-            step: None,
-            passed: None,
-        };
-        let point = snapshot.evaluation.elements[e].point(snapshot.evaluation.t);
+    /// What changes of the singular forces of element `e` at node `i`, where it is told `at`, and of their integrals since `from`.
+    pub(super) fn singular_at(
+        &self,
+        equations: &Equations,
+        (e, i): (usize, usize),
+        from: f64,
+        at: &Point,
+    ) -> [Vec<f64>; 3] {
+        let mut sums = [(); 3].map(|()| vec![0.0; self.count()]);
+        let own = &self.elements[e];
         let [value, once, twice] = &mut sums;
-        equations.bank.vary_singularity(e, (from, &point), &told, law, [value, once, twice]);
+        equations.bank.vary_singularity(
+            e,
+            (from, at),
+            &own.told(self.count(), i, None),
+            &own.law,
+            [value, once, twice],
+        );
         sums
     }
 
@@ -256,6 +288,11 @@ impl Variation {
         for (e, (own, element)) in self.singular.elements.iter_mut().zip(&self.elements).enumerate() {
             own.stroke = equations.bank.point(e, 0).stroke;
             own.stroke_change.copy_from_slice(&element.stroke[..count]);
+        }
+        if self.one_size.is_some() {
+            self.singular.is_there = self.elements.iter().any(|element| element.law.is_singular());
+            self.singular.is_there |= (0..self.elements.len()).any(|e| equations.bank.is_singular(e));
+            return;
         }
         self.share_forces(equations);
     }

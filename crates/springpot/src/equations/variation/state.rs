@@ -22,6 +22,8 @@ pub(crate) struct VariationState {
     saltation: Saltation,
     works: WorksDone,
     control: Option<ControlVariationState>,
+    /// Whether the accelerations there are known, of steps of one size.
+    accelerated: bool,
 }
 
 impl Variation {
@@ -39,12 +41,14 @@ impl Variation {
             control,
             saltation: self.saltation.clone(),
             works: self.works.save(),
+            accelerated: self.one_size.as_ref().is_some_and(|one_size| one_size.accelerated[0]),
         }
     }
 
     /// Goes on from what was saved where the run is at `start`; `false` where that is of another one.
     pub(crate) fn load(&mut self, state: VariationState, equations: &Equations, start: Node) -> bool {
-        let VariationState { motion: [q, v, a], sizes, hidden, singular, laws, control, saltation, works } = state;
+        let VariationState { motion: [q, v, a], sizes, hidden, singular, laws, control, saltation, works, accelerated } =
+            state;
         let (blocks, count) = (self.sizes[0].len(), self.count());
         if !self.singular.load(singular, count)
             || [laws.len(), hidden.len()] != [self.elements.len(); 2]
@@ -67,6 +71,9 @@ impl Variation {
         self.saltation = saltation;
         self.elements.iter_mut().zip(laws).for_each(|(element, law)| element.law = law);
         self.see_start(equations, start);
+        if let Some(one_size) = &mut self.one_size {
+            one_size.accelerated = [accelerated, false];
+        }
         true
     }
 }

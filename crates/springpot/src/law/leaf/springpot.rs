@@ -175,8 +175,15 @@ impl Springpot {
             if own.iter().any(|passed| *passed != 0.0) {
                 // Of a singular start, whose share follows from the time since then, nothing is known.
                 let theta = step.positions()[i];
-                let slope = if memory.is_singular() { f64::NAN } else { memory.slopes(&polynomial, theta).derivative };
-                add(derivatives, slope, own);
+                let slope = || match step.nodes {
+                    // The mean over the step, h long: d(∫D/h)/dh = (D(h) − ∫D/h)/h.
+                    Nodes::Midpoint => {
+                        let mean = affine.history[i] + affine.stroke[i][i] * (step.stroke[1] - step.stroke[0]);
+                        (memory.regular_derivative(&polynomial, 1.0, 0.0, 0.0) - mean) / (theta * step.h)
+                    }
+                    _ => memory.slopes(&polynomial, theta).derivative,
+                };
+                add(derivatives, if memory.is_singular() { f64::NAN } else { slope() }, own);
             }
             for (j, passed) in passed.chunks_exact(count).enumerate() {
                 let at = step.positions()[j];

@@ -86,7 +86,9 @@ impl LoopControl {
     /// Takes the step that was just worked out into the past.
     pub(super) fn commit(&mut self, system: &System, stage: &OneStage) -> Result<(), RunError> {
         let ends = [&stage.origin, &stage.end].map(|end| (end.t, &end.q[..], &end.v[..]));
-        self.run.commit(system, ends)
+        self.run.take_ends(system, ends)?;
+        self.run.commit();
+        Ok(())
     }
 }
 

@@ -18,6 +18,7 @@ mod real_time;
 mod rub;
 mod run;
 mod step;
+mod variation;
 
 pub use crate::system::fixed_step::Method;
 pub use real_time::{Loop, LoopError, LoopState, MemorySettings};

@@ -7,6 +7,7 @@ use crate::actuation::Forward;
 use crate::collocation::Nodes;
 use crate::collocation::{RADAU_NODES, STAGES};
 use crate::elements::ElementBank;
+use crate::equations::ROW;
 use crate::equations::context::Context;
 use crate::equations::drives::drive;
 use crate::equations::evaluate::Evaluation;
@@ -14,6 +15,7 @@ use crate::equations::resistance::joint_loss;
 use crate::fractional::Form;
 use crate::law::Course;
 use crate::methods::stepper::{Stepper, Target};
+use crate::sensitivity::SensitivityError;
 use crate::signal::Agenda;
 use crate::system::error::RunError;
 use crate::system::fixed_step::FixedStep;
@@ -115,6 +117,14 @@ impl Fixed {
         Ok(())
     }
 
+    /// What parameters change of the accelerations at the start (0) or at the end (1) of the step.
+    fn accelerate_variation(&self, recorder: &mut Recorder, end: usize) {
+        let Recorder { evaluations, equations, variation: Some(variation), .. } = recorder else { return };
+        let (at, OneStage { free, limits, .. }) = (&evaluations[end * STAGES], &self.step);
+        let rests = |k: usize| limits[k] > 0.0 && at.v[k] == 0.0;
+        variation.accelerate_end(equations, end, at, (free, rests));
+    }
+
     /// Accelerations and all else that a row asks for, at the start (0) or at the end (1) of the step.
     fn accelerate(&mut self, cx: Context, recorder: &mut Recorder, end: usize) -> Result<(), RunError> {
         let Recorder { evaluations, equations, scratch, is_whole, .. } = recorder;
@@ -133,10 +143,6 @@ impl Fixed {
 impl Stepper for Fixed {
     fn longest_step(&self, _: Context, _: &Settings) -> f64 {
         self.by.step
-    }
-
-    fn varies(&self) -> bool {
-        false
     }
 
     fn fixed_step(&self) -> Option<f64> {
@@ -167,6 +173,17 @@ impl Stepper for Fixed {
     fn solve(&mut self, cx: Context, recorder: &mut Recorder, target: &Target) -> Result<Result<f64, f64>, RunError> {
         self.step.attempt(cx, &mut recorder.equations.bank, target.to, target.size)?;
         self.newton_iterations += u64::from(ITERATIONS);
+        if let Recorder { equations, variation: Some(variation), .. } = recorder {
+            if !self.step.vary(equations, variation, target.size) {
+                let what = format!("a motion without inertia at t = {} s", target.from);
+                return Err(SensitivityError::Unknown { what }.into());
+            }
+            if !self.step.is_found() {
+                variation
+                    .lose_all(target.from, "a step ends before its iterations have found it: friction bends within it");
+            }
+            variation.tell_ledger([target.from, target.to], target.size);
+        }
         self.tell_ledger(cx, &mut recorder.equations.bank, target);
         self.fill_evaluations(cx, recorder, target)?;
         (0..recorder.equations.bank.len()).for_each(|e| _ = recorder.equations.bank.account(e));
@@ -176,6 +193,28 @@ impl Stepper for Fixed {
         }
         recorder.take_powers(|_, e, _| self.step.equations.force(e));
         Ok(Ok(self.by.step))
+    }
+
+    fn vary_within(&mut self, recorder: &mut Recorder, within: Option<(f64, f64)>) {
+        match within {
+            None => {
+                self.accelerate_variation(recorder, 0);
+                recorder.variation.iter_mut().for_each(|variation| variation.take_start(ROW));
+            }
+            Some((1.0, _)) => {
+                self.accelerate_variation(recorder, 1);
+                recorder.variation.iter_mut().for_each(|variation| variation.take_end());
+            }
+            Some((theta, h)) => {
+                (0..2).for_each(|end| self.accelerate_variation(recorder, end));
+                let Recorder { evaluations: [start, ..], variation, .. } = recorder;
+                let has_first = start.a.iter().all(|a| a.is_finite());
+                if let Some(variation) = variation {
+                    variation.go_between(theta, h, has_first);
+                    self.step.turn_between(variation, theta, h);
+                }
+            }
+        }
     }
 
     fn complete(&mut self, cx: Context, recorder: &mut Recorder, end: usize) -> Result<(), RunError> {

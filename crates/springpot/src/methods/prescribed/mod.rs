@@ -8,11 +8,12 @@ mod reversal;
 use crate::account::recorder::{Recorder, StepPowers};
 use crate::collocation::{RADAU_NODES, RADAU_WEIGHTS, STAGES};
 use crate::elements::NoDirection;
+use crate::equations::Node;
 use crate::equations::context::Context;
 use crate::equations::evaluate::Evaluation;
 use crate::equations::kinks::Seen;
 use crate::equations::{Change, Equations, Look, Scale, on_grid};
-use crate::equations::{Node, ROW, TANGENTS, Variation};
+use crate::equations::{TANGENTS, Variation};
 use crate::methods::stepper::{Behind, Stepper, Target, Trial};
 use crate::motion::Trajectory;
 use crate::signal::Agenda;
@@ -347,10 +348,6 @@ impl Stepper for Prescribed {
         }
         variation.ask(equations);
         Ok(())
-    }
-
-    fn vary_within(&mut self, variation: &mut Variation, _theta: f64, _size: f64) {
-        variation.take_start(ROW);
     }
 
     fn gives_up(&self, cx: Context, recorder: &Recorder, step: &Target, size: f64) -> Option<RunError> {

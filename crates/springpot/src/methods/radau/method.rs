@@ -12,7 +12,7 @@ use crate::dynamics::Kinematics;
 use crate::equations::context::Context;
 use crate::equations::drives::drive;
 use crate::equations::evaluate::Evaluation;
-use crate::equations::{Change, Equations, Look, Solved, Variation, Within};
+use crate::equations::{Change, Equations, Look, ROW, Solved, Within};
 use crate::law::Course;
 use crate::methods::stepper::{Behind, Stepper, Target, Trial};
 use crate::sensitivity::SensitivityError;
@@ -199,8 +199,12 @@ impl Stepper for Radau {
         Some(&self.step.origin.a)
     }
 
-    fn vary_within(&mut self, variation: &mut Variation, theta: f64, size: f64) {
-        self.step.vary_within(variation, theta, size);
+    fn vary_within(&mut self, recorder: &mut Recorder, within: Option<(f64, f64)>) {
+        let Some(variation) = &mut recorder.variation else { return };
+        match within {
+            Some((theta, size)) => self.step.vary_within(variation, theta, size),
+            None => variation.take_start(ROW),
+        }
     }
 
     fn gives_up(&self, _: Context, _: &Recorder, step: &Target, size: f64) -> Option<RunError> {

@@ -2,6 +2,7 @@
 
 use super::errors::Errors;
 use super::sizes::{Sizes, Tolerance};
+use super::variation::TurnedStages;
 use crate::actuation::Forward;
 use crate::collocation::radau::A;
 use crate::collocation::{STAGES, TABLEAU};
@@ -59,6 +60,8 @@ pub(super) struct RadauStep {
     pub(super) contraction: f64,
     pub(super) errors: Errors,
     pub(super) scratch: EstimateScratch,
+    /// What parameters change of joints that turn freely, over the step that was varied last.
+    pub(super) turned: Vec<TurnedStages>,
 }
 
 /// The step that was fitted last as a function of time.
@@ -111,6 +114,7 @@ impl RadauStep {
             contraction: 0.0,
             errors: Errors::new(tolerance, Sizes::new(&forward.q, nv)),
             scratch: EstimateScratch::default(),
+            turned: Vec::new(),
         }
     }
 

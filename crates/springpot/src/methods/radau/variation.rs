@@ -2,19 +2,91 @@
 //!
 //! Q_i = q + c_i h v + h² Σ_j (A²)_ij a_j and V_i = v + h Σ_j A_ij a_j are linear, and so are their changes. Those of the accelerations solve the
 //! linearised equations of motion of all stages at once, with the slopes at the stages themselves: J δa = −ρ, ρ what is unbalanced where the
-//! accelerations stay.
+//! accelerations stay. Joints that turn freely are not linear in that; what J does not know of them is left over, and taken up by the same J again.
 
 use super::dense::integrals;
 use super::estimate::raw;
 use super::step::{EstimateScratch, RadauStep};
 use crate::collocation::radau::{A, A_SQUARED, GAMMA};
 use crate::collocation::{RADAU_NODES, STAGES, TABLEAU};
-use crate::equations::{Equations, ROW, StepErrors, TANGENTS, Variation};
+use crate::equations::{Equations, Found, ROW, StepErrors, TANGENTS, Variation};
+use crate::linalg::Lu;
+use crate::model::{FreeTurn, Turned, add_turned};
 
 /// How often what changes of temperatures is found together with what changes of the motion.
 const MOST_PASSES: usize = 20;
 
+/// A joint that turns freely over a step: how its turns at the stages answer to its velocities there.
+#[derive(Debug)]
+pub(super) struct TurnedStages {
+    /// In the run, and its first velocity in the extended robot.
+    free: FreeTurn,
+    first: usize,
+    /// Of the rates ξ' by v and by ξ, stage by stage.
+    rates: [[Turned; 2]; STAGES],
+    /// Of what the steps to the stages carry along, and by ξ.
+    steps: [[Turned; 2]; STAGES],
+    /// Of 1 − h A ∂ξ'/∂ξ.
+    lu: Lu,
+    /// What changes of ξ' at the stages, in blocks.
+    rate_changes: [Vec<f64>; STAGES],
+}
+
+impl TurnedStages {
+    /// What changes of the turns where velocities change as the stages have it.
+    fn place(&mut self, variation: &mut Variation, h: f64) {
+        let (count, d) = (variation.count(), self.free.count());
+        let own = self.first * count..(self.first + d) * count;
+        // ξ'_j = J⁻¹ δv_j + B_j δξ_j, δξ_i = h Σ A_ij ξ'_j.
+        let mut by_velocity = vec![vec![0.0; d * count]; STAGES];
+        for (j, sum) in by_velocity.iter_mut().enumerate() {
+            add_turned(sum, &self.rates[j][0], &variation.nodes[j + 1].v[own.clone()], count);
+        }
+        let mut xi = vec![0.0; STAGES * d * count];
+        for (i, xi) in xi.chunks_exact_mut((d * count).max(1)).enumerate() {
+            for (j, sum) in by_velocity.iter().enumerate() {
+                xi.iter_mut().zip(sum).for_each(|(xi, sum)| *xi += h * A[i][j] * sum);
+            }
+        }
+        self.lu.solve_rows(&mut xi, count);
+        let [start, stages @ .., _] = &mut variation.nodes;
+        for (i, xi) in xi.chunks_exact((d * count).max(1)).enumerate() {
+            let rate = &mut self.rate_changes[i];
+            rate.clone_from(&by_velocity[i]);
+            add_turned(rate, &self.rates[i][1], xi, count);
+            let q = &mut stages[i].q[own.clone()];
+            q.fill(0.0);
+            add_turned(q, &self.steps[i][0], &start.q[own.clone()], count);
+            add_turned(q, &self.steps[i][1], xi, count);
+        }
+    }
+}
+
 impl RadauStep {
+    /// Looks at the joints that turn freely in the step that was solved, of size `h`.
+    fn look_at_turns(&mut self, equations: &Equations, variation: &Variation, h: f64) -> bool {
+        self.turned.clear();
+        let (model, free) = (&self.model, equations.free());
+        for turn in model.free_turns().filter(|turn| free.contains(&turn.velocities.start)) {
+            let (d, first) = (turn.count(), variation.of_run(&[turn.velocities.start])[0]);
+            let rates = self.stages.each_ref().map(|stage| turn.rate_slopes(&stage.xi, &stage.v));
+            let steps = self.stages.each_ref().map(|stage| turn.step_slopes(&stage.xi));
+            let mut lu = Lu::default();
+            let regular = lu.factor(STAGES * d, |matrix| {
+                for (r, line) in matrix.chunks_exact_mut(STAGES * d).enumerate() {
+                    for (c, entry) in line.iter_mut().enumerate() {
+                        *entry = f64::from(u8::from(r == c)) - h * A[r / d][c / d] * rates[c / d][1][r % d][c % d];
+                    }
+                }
+            });
+            if !regular {
+                return false;
+            }
+            self.turned.push(TurnedStages { free: turn, first, rates, steps, lu, rate_changes: Default::default() });
+        }
+        true
+    }
+
     /// Works out what changes over the step that was solved, of size `h`, where signals at its end are those at `t_end`; false where nothing does
     /// so in one way.
     pub(super) fn vary(&mut self, equations: &Equations, variation: &mut Variation, h: f64, t_end: f64) -> bool {
@@ -27,6 +99,9 @@ impl RadauStep {
             let t = if i + 1 == STAGES { t_end } else { self.origin.t + RADAU_NODES[i] * h };
             variation.see(equations, i + 1, stage.node(t), &force);
             variation.steer(i + 1, equations, &force);
+        }
+        if !self.model.is_one_degree() && !self.look_at_turns(equations, variation, h) {
+            return false;
         }
         for pass in 0..MOST_PASSES {
             // Temperatures follow from losses, and those from strokes and rates at the nodes.
@@ -48,12 +123,35 @@ impl RadauStep {
         free: &[usize],
         (h, again): (f64, bool),
     ) -> bool {
+        variation.nodes[1..=STAGES].iter_mut().for_each(|stage| stage.a.fill(0.0));
+        self.place_variation(variation, free, h);
+        variation.follow(equations);
+        if !again {
+            variation.ask(equations);
+        }
+        if free.is_empty() {
+            return true;
+        }
+        let mut found = Found::new(variation.count());
+        loop {
+            if !self.solve_variation(equations, variation, (free, h), &mut found) {
+                return false;
+            }
+            self.place_variation(variation, free, h);
+            variation.follow(equations);
+            // Where all is linear it is found at once.
+            if self.turned.is_empty() || found.is_all() {
+                return true;
+            }
+        }
+    }
+
+    /// What changes at the stages under what changes of the accelerations there.
+    fn place_variation(&mut self, variation: &mut Variation, free: &[usize], h: f64) {
         let count = variation.count();
-        // The stages where the accelerations stay.
-        (1..=STAGES).for_each(|i| variation.take_start(i));
+        (1..=STAGES).for_each(|i| variation.take_motion(i));
         let [start, stages @ .., _] = &mut variation.nodes;
         for (i, stage) in stages.iter_mut().enumerate() {
-            stage.a.fill(0.0);
             let moved = RADAU_NODES[i] * h;
             for &k in free {
                 let block = k * count..(k + 1) * count;
@@ -61,14 +159,7 @@ impl RadauStep {
                 stage.q[block].iter_mut().zip(rates).for_each(|(q, rate)| *q += moved * rate);
             }
         }
-        variation.follow(equations);
-        if !again {
-            variation.ask(equations);
-        }
-        if !free.is_empty() && !self.solve_variation(equations, variation, free, h) {
-            return false;
-        }
-        let [_, first, second, third, _] = &mut variation.nodes;
+        let [first, second, third] = stages;
         for &k in free {
             let block = k * count..(k + 1) * count;
             let a = [&first.a, &second.a, &third.a].map(|a| &a[block.clone()]);
@@ -82,8 +173,9 @@ impl RadauStep {
                 }
             }
         }
-        variation.follow(equations);
-        true
+        for turned in &mut self.turned {
+            turned.place(variation, h);
+        }
     }
 
     /// The estimate of the step's error of the parameter whose changes it knows least, in units of its tolerance; the step was varied and estimated.
@@ -102,7 +194,12 @@ impl RadauStep {
         for &k in &free {
             let block = k * count..(k + 1) * count;
             let at = [start, &stages[0], &stages[1], &stages[2]];
-            push_raw(h, at.map(|node| &node.v[block.clone()]), places);
+            let mut rates = at.map(|node| &node.v[block.clone()]);
+            if let Some((of_turn, first)) = rates_of_turn(&self.turned, k) {
+                let own = (k - first) * count..(k - first + 1) * count;
+                rates[1..].iter_mut().zip(of_turn).for_each(|(rates, turn)| *rates = &turn[own.clone()]);
+            }
+            push_raw(h, rates, places);
             match variation.is_singular() {
                 false => push_raw(h, at.map(|node| &node.a[block.clone()]), speeds),
                 true => speeds.extend((0..count).map(|p| {
@@ -143,51 +240,78 @@ impl RadauStep {
                 row.v[block] += h * once;
             }
         }
+        let mut xi = vec![0.0; self.model.nv()];
+        for TurnedStages { free, first, rate_changes, .. } in &self.turned {
+            for k in free.velocities.clone() {
+                xi[k] = h * integrals(self.fitted.turning.each_ref().map(|u| u[k]), theta)[1];
+            }
+            let [carried, along] = free.step_slopes(&xi);
+            let own = first * count..(first + free.count()) * count;
+            let mut change = vec![0.0; own.len()];
+            let [start, .., row] = &mut variation.nodes;
+            for (at, change) in change.iter_mut().enumerate() {
+                let [a, b, c] = rate_changes.each_ref().map(|rates| rates[at]);
+                let nodes = [start.v[own.start + at], a, b, c];
+                let cubic = TABLEAU.rates.map(|line| line.iter().zip(nodes).map(|(l, rate)| l * rate).sum::<f64>());
+                *change = h * integrals(cubic, theta)[1];
+            }
+            let q = &mut row.q[own.clone()];
+            q.fill(0.0);
+            add_turned(q, &carried, &start.q[own], count);
+            add_turned(q, &along, &change, count);
+        }
     }
 
-    /// J δa = −ρ: δa into the stages of `variation`.
-    fn solve_variation(&self, equations: &Equations, variation: &mut Variation, free: &[usize], h: f64) -> bool {
+    /// J Δδa = −ρ: Δδa to the stages of `variation`. J is factored where nothing was found yet.
+    fn solve_variation(
+        &self,
+        equations: &Equations,
+        variation: &mut Variation,
+        (free, h): (&[usize], f64),
+        found: &mut Found,
+    ) -> bool {
         let (n, count, own) = (variation.nv(), variation.count(), free.len());
         let size = STAGES * own;
         let mut solve = std::mem::take(&mut variation.solve);
-        let regular = solve.factor(size, |matrix| {
-            for i in 0..STAGES {
-                let node = &variation.nodes[i + 1];
-                for j in 0..STAGES {
-                    let (damping, stiffness) = (h * A[i][j], h * h * A_SQUARED[i][j]);
-                    for (r, &row) in free.iter().enumerate() {
-                        let line = &mut matrix[(i * own + r) * size + j * own..][..own];
-                        for (entry, &column) in line.iter_mut().zip(free) {
-                            let at = row * n + column;
-                            *entry = damping * node.slopes.d_v[at] + stiffness * node.slopes.d_q[at];
-                            if i == j {
-                                *entry += node.slopes.d_a[at];
-                            }
-                        }
-                    }
-                }
-                let felt = |row: usize| !variation.relieves(i + 1, row);
-                for e in 0..variation.elements.len() {
-                    let response = equations.bank.response(e);
-                    let [on, _] = &node.gradients[e];
+        let regular = !found.is_first()
+            || solve.factor(size, |matrix| {
+                for i in 0..STAGES {
+                    let node = &variation.nodes[i + 1];
                     for j in 0..STAGES {
-                        for m in 0..STAGES {
-                            let [gradient, bend] = &variation.nodes[m + 1].gradients[e];
-                            let (stroke, rate) = (response.d_stroke[i][m], response.d_rate[i][m]);
-                            let (twice, once) = (h * h * A_SQUARED[m][j], h * A[m][j]);
-                            let [by_gradient, by_bend] = [twice * stroke + once * rate, twice * rate];
-                            for (r, &row) in free.iter().enumerate().filter(|(_, row)| felt(**row)) {
-                                let line = &mut matrix[(i * own + r) * size + j * own..][..own];
-                                for (entry, &column) in line.iter_mut().zip(free) {
-                                    *entry += on[row] * (by_gradient * gradient[column] + by_bend * bend[column]);
+                        let (damping, stiffness) = (h * A[i][j], h * h * A_SQUARED[i][j]);
+                        for (r, &row) in free.iter().enumerate() {
+                            let line = &mut matrix[(i * own + r) * size + j * own..][..own];
+                            for (entry, &column) in line.iter_mut().zip(free) {
+                                let at = row * n + column;
+                                *entry = damping * node.slopes.d_v[at] + stiffness * node.slopes.d_q[at];
+                                if i == j {
+                                    *entry += node.slopes.d_a[at];
                                 }
                             }
                         }
                     }
+                    let felt = |row: usize| !variation.relieves(i + 1, row);
+                    for e in 0..variation.elements.len() {
+                        let response = equations.bank.response(e);
+                        let [on, _] = &node.gradients[e];
+                        for j in 0..STAGES {
+                            for m in 0..STAGES {
+                                let [gradient, bend] = &variation.nodes[m + 1].gradients[e];
+                                let (stroke, rate) = (response.d_stroke[i][m], response.d_rate[i][m]);
+                                let (twice, once) = (h * h * A_SQUARED[m][j], h * A[m][j]);
+                                let [by_gradient, by_bend] = [twice * stroke + once * rate, twice * rate];
+                                for (r, &row) in free.iter().enumerate().filter(|(_, row)| felt(**row)) {
+                                    let line = &mut matrix[(i * own + r) * size + j * own..][..own];
+                                    for (entry, &column) in line.iter_mut().zip(free) {
+                                        *entry += on[row] * (by_gradient * gradient[column] + by_bend * bend[column]);
+                                    }
+                                }
+                            }
+                        }
+                    }
+                    self.answer_to_state(equations, variation, (i, free, h), matrix);
                 }
-                self.answer_to_state(equations, variation, (i, free, h), matrix);
-            }
-        });
+            });
         if regular {
             let mut right = std::mem::take(&mut variation.right);
             right.clear();
@@ -203,16 +327,21 @@ impl RadauStep {
                 }
             }
             solve.solve_rows(&mut right, count);
+            found.take(&right, |column| {
+                let stages = variation.nodes[1..=STAGES].iter();
+                let all = stages.flat_map(|stage| free.iter().map(move |&k| stage.a[k * count + column].abs()));
+                all.fold(0.0, f64::max)
+            });
             for (i, stage) in right.chunks_exact((own * count).max(1)).enumerate() {
                 for (own, &k) in stage.chunks_exact(count.max(1)).zip(free) {
-                    let a = &mut variation.nodes[i + 1].a[k * count..][..count];
-                    a.iter_mut().zip(own).for_each(|(a, own)| *a = -own);
+                    found.add(&mut variation.nodes[i + 1].a[k * count..][..count], own);
                 }
             }
+            found.go_on();
             variation.right = right;
         }
         variation.solve = solve;
-        regular
+        regular && !found.fails()
     }
 
     /// Adds how what follows from the state answers to the accelerations to the lines of stage `i` of the matrix: terms of errors, and inputs.
@@ -258,4 +387,10 @@ fn push_raw(h: f64, [start, first, second, third]: [&[f64]; 4], to: &mut Vec<f64
     to.extend(
         start.iter().zip(nodes).map(|(start, ((first, second), third))| raw(h, *start, [*first, *second, *third])),
     );
+}
+
+/// What changes of ξ' at the stages, of the joint that turns freely and has velocity `k` of the extended robot, and the first of its velocities.
+fn rates_of_turn(turned: &[TurnedStages], k: usize) -> Option<(&[Vec<f64>; STAGES], usize)> {
+    let own = |turned: &&TurnedStages| (turned.first..turned.first + turned.free.count()).contains(&k);
+    turned.iter().find(own).map(|turned| (&turned.rate_changes, turned.first))
 }

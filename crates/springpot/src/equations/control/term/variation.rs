@@ -1,8 +1,10 @@
 //! What parameters change of a term: the derivative of its memory, of its gain and of its order.
 
 use super::{Integrand, Term};
-use crate::collocation::STAGES;
-use crate::fractional::{Form, KernelError, MemoryTangent, Singular, TangentPoint, TangentSeeds, TangentStep};
+use crate::collocation::{Nodes, STAGES};
+use crate::fractional::{
+    Form, KernelError, MemoryTangent, Singular, StepStart, TangentPoint, TangentSeeds, TangentStep,
+};
 use serde::{Deserialize, Serialize};
 
 /// Of one [`Term`], in blocks of one number for each parameter.
@@ -211,5 +213,30 @@ impl TermVariation {
         for blocks in &mut self.errors {
             blocks.copy_within(STAGES * count.., 0);
         }
+    }
+
+    /// The same of a step of which the ends alone are known: its size, the error and its rate there and what an integral does, and what changes of those.
+    pub(in crate::equations::control) fn commit_ends(
+        &mut self,
+        term: &Term,
+        (h, ends, integrand): (f64, [[f64; 2]; 2], Integrand),
+        changes: &[(Vec<f64>, Vec<f64>)],
+    ) {
+        let count = self.count();
+        let polynomial = term.polynomial_of_ends(h, ends, integrand);
+        let mut u = vec![0.0; 4 * count];
+        for p in 0..count {
+            let [from, to] = [0, 1].map(|end| [changes[end].0[p], changes[end].1[p]]);
+            let own = term.polynomial_of_ends(h, [from, to], integrand);
+            own.u.iter().enumerate().for_each(|(k, change)| u[k * count + p] = *change);
+            if term.is_integral() {
+                self.integral[p] += own.travel();
+            }
+        }
+        let [stroke, rate] = if term.is_integral() { [term.kept.integral, 0.0] } else { ends[0] };
+        // What it takes in hangs on no time: nothing of it jumps.
+        let start = StepStart { t: 0.0, h, stroke, rate };
+        let step = TangentStep { start, nodes: Nodes::Radau, places: None, form: Form::Rates, polynomial };
+        self.tangent.commit(&term.kept.memory, &step, &u, None);
     }
 }

@@ -31,6 +31,11 @@ impl ControlVariation {
         self.held.clone_from(held);
     }
 
+    /// What changes of the inputs that sampled laws said last: element, input and a block.
+    pub(crate) fn held_inputs(&self) -> impl Iterator<Item = (usize, usize, &[f64])> {
+        self.held.inputs.iter().map(|(e, input, by)| (*e, *input, &by[..]))
+    }
+
     /// What changes of what the sampled expression for a target of the run says of the row that was seen, where elements pull with forces that change
     /// by `forces`, and the motion changes by these blocks of q, v and a.
     pub(crate) fn say(

@@ -135,18 +135,36 @@ impl Heated {
         ]
     }
 
-    /// What the law itself sees of a point.
+    /// 1/a_T of the one node of a step, which stands for the whole of it ([`super::clock::Clock`]); of steps of several nodes none.
+    fn pace_of(&self, step: &Step, warmed: &Warmed, numbers: &Numbers) -> Option<Dual> {
+        let shift = self.heat.shift.as_ref().filter(|_| step.nodes.count() == 1)?;
+        let at = |k: usize| (-numbers.ln_factor(shift, warmed.temperature[k])[0]).exp();
+        Some(if step.nodes == Nodes::One { Dual::from(0.5) * (at(0) + at(1)) } else { at(1) })
+    }
+
+    /// What changes of ln a_T at the start or at a node of the step.
+    fn ln_factor_at(&self, step: &Step, k: usize, warmed: &Warmed, numbers: &Numbers) -> f64 {
+        match (&self.heat.shift, self.pace_of(step, warmed, numbers).filter(|_| k > 0)) {
+            (_, Some(pace)) => -pace.slope / pace.value,
+            (Some(shift), None) => numbers.ln_factor(shift, warmed.temperature[k])[0].slope,
+            (None, None) => 0.0,
+        }
+    }
+
+    /// What the law itself sees of a point; 1/a_T is `pace` where that is told.
     fn see(
         &self,
         numbers: &Numbers,
         [stroke, rate, temperature, warming]: [Dual; 4],
         inputs: impl Iterator<Item = InputValue<Dual>>,
+        pace: Option<Dual>,
     ) -> Seen {
         let (ln, slope) = match &self.heat.shift {
             Some(shift) => numbers.ln_factor(shift, temperature).into(),
             None => (Dual::default(), Dual::default()),
         };
-        let (factor, mut rest, mut inside) = (ln.exp(), inputs, Vec::new());
+        let factor = pace.map_or_else(|| ln.exp(), |pace| Dual::from(1.0) / pace);
+        let (mut rest, mut inside) = (inputs, Vec::new());
         for i in 0..self.inputs {
             let told = match (self.takes == Some(i), self.heat.thermal) {
                 (true, Some(_)) => InputValue { value: temperature, rate: warming },
@@ -190,7 +208,8 @@ impl Heated {
                     InputValue { value, rate }
                 };
                 let inputs = step.inputs_at(k).iter().enumerate().map(of_input);
-                each.push(self.see(numbers, [stroke, rate, warmed.temperature[k], warmed.warming[k]], inputs));
+                let at = [stroke, rate, warmed.temperature[k], warmed.warming[k]];
+                each.push(self.see(numbers, at, inputs, self.pace_of(step, warmed, numbers).filter(|_| k > 0)));
             }
             push_inputs(&mut inside, &each);
             each.into_iter().for_each(|seen| inside.push(seen));
@@ -211,9 +230,8 @@ impl Heated {
         let (count, nodes) = (warmed.len(), step.nodes.count());
         let mut passed = vec![0.0; count * if until.is_some() { 1 } else { nodes }];
         for (p, (warmed, numbers)) in warmed.iter().zip(numbers).enumerate().filter(|(_, both)| moves(*both)) {
-            if step.nodes != Nodes::Radau {
-                // One node stands for the whole of a step of one size.
-                passed.iter_mut().skip(p).step_by(count).for_each(|passed| *passed = f64::NAN);
+            if let Some(pace) = self.pace_of(step, warmed, numbers) {
+                passed[p] = until.unwrap_or(step.positions()[0]) * step.h * pace.slope;
                 continue;
             }
             let pace = |theta: f64| {
@@ -293,10 +311,7 @@ impl Heated {
                 let [by_capacity, by_conductance, by_ambient, _] = numbers.thermal.map(|number| number.slope);
                 // Of the power by the clock of the wall.
                 let power = |k: usize, warmed: &Warmed| {
-                    let ln = match &self.heat.shift {
-                        Some(shift) => numbers.ln_factor(shift, warmed.temperature[k])[0].slope,
-                        None => 0.0,
-                    };
+                    let ln = self.ln_factor_at(step, k, warmed, numbers);
                     flows[0][k * count + p] / inside.clock.factor[k] - powers[k].dissipation * ln
                 };
                 let driven = |k: usize, warmed: &Warmed| {
@@ -366,7 +381,7 @@ impl Heated {
                 let stroke = Dual { value: at.stroke, slope: told.stroke[p] };
                 let rate = Dual { value: at.rate, slope: told.rate[p] };
                 let inputs = told.inputs_of(at, p, count).into_iter();
-                self.see(&numbers[p], [stroke, rate, temperature, warming], inputs)
+                self.see(&numbers[p], [stroke, rate, temperature, warming], inputs, None)
             })
             .collect();
         push_inputs(&mut inside, &each);
@@ -591,10 +606,7 @@ impl Vary for Heated {
         for k in 0..=nodes {
             let factor = inside.clock.factor[k];
             for p in 0..count {
-                let ln = match &self.heat.shift {
-                    Some(shift) => numbers[p].ln_factor(shift, warmed[p].temperature[k])[0].slope,
-                    None => 0.0,
-                };
+                let ln = self.ln_factor_at(step, k, &warmed[p], &numbers[p]);
                 let at = k * count + p;
                 sum.dissipation[at] += (flows[0][at] - powers[k].dissipation * ln) / factor;
                 sum.input[at] += (flows[1][at] - powers[k].input * ln) / factor;

@@ -93,7 +93,8 @@ struct Clock {
 impl Clock {
     fn of(step: &Step, told: &StepVariation, asked: &Asked, until: Option<(f64, &PointVariation)>) -> Option<Self> {
         let (passed, count) = (told.passed?, told.count);
-        let h = passed[passed.len() - count..].to_vec();
+        let last = step.positions()[step.nodes.count() - 1];
+        let h: Vec<f64> = passed[passed.len() - count..].iter().map(|own| own / last).collect();
         let moved = |own: f64, theta: f64, h: f64| (own - theta * h) / step.h;
         let of_node = |(own, theta): (&[f64], &f64)| -> Vec<f64> {
             own.iter().zip(&h).map(|(own, h)| moved(*own, *theta, *h)).collect()
