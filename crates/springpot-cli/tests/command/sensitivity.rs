@@ -371,3 +371,36 @@ element = [{ name = "pad", joint = "x", law = "fractional-kelvin-voigt", paramet
     assert_eq!(ended.code, Some(1), "{ended:?}");
     assert!(ended.stdout.contains("motion.start.v.x DIFFERS: "), "{}", ended.stdout);
 }
+
+#[test]
+fn gradients_back_through_the_run_are_those_beside_it() {
+    let place = Place::with(&format!("{ARM}{METRICS}"));
+    let by = "element.strut.k,constants.A,robot.body.fore.mass,element.strut.to.point.0,motion.start.q.q2";
+    let quick = ["--quiet", "--no-figures", "--set", "time.end=1", "--set", "time.output_step=0.01"];
+    let run = |more: &[&str]| place.done(&[&["run", "arm.toml"][..], &quick, more].concat());
+    let differentiated = ["--sensitivity", by, "--set", "sensitivity.control=false"];
+    run(&["--out", "plain"]);
+    run(&[&differentiated[..], &["--out", "forward"]].concat());
+    run(&[&differentiated[..], &["--set", "sensitivity.method=\"adjoint\"", "--out", "adjoint"]].concat());
+    for file in ["results.csv", "metrics.csv", "summary.csv"] {
+        assert_eq!(place.read(format!("adjoint/{file}")), place.read(format!("plain/{file}")), "{file}");
+    }
+    assert_eq!(place.record("adjoint")["sensitivity"]["method"], "adjoint");
+    assert_eq!(place.read("adjoint/ranking.csv").lines().count(), 1);
+    let [forward, adjoint] = ["forward", "adjoint"].map(|folder| place.table(format!("{folder}/gradient.csv")));
+    assert_eq!(adjoint.texts("parameter"), forward.texts("parameter"));
+    let (found, truth) = (adjoint.numbers("derivative"), forward.numbers("derivative"));
+    assert_eq!(found.len(), 12 * 5);
+    for ((found, truth), metric) in found.iter().zip(&truth).zip(adjoint.texts("metric")) {
+        let agrees = (found - truth).abs() <= 1e-10 * truth.abs() || found.is_nan() && truth.is_nan();
+        assert!(agrees, "{metric}: {found} for {truth}");
+    }
+    assert!(truth.iter().filter(|truth| truth.is_finite() && **truth != 0.0).count() > 40);
+    // What it does not do is refused by name, with the way out.
+    let adjoint = ["--sensitivity", by, "--set", "sensitivity.method=\"adjoint\""];
+    let refused = |more: &[&str]| place.springpot(&[&["check", "arm.toml"][..], &adjoint, more].concat());
+    refused(&["--set", "robot.body.fore.joint.friction={ force = 0.1, stick = true }"])
+        .ends(2, &["does not go back through friction that sticks", "method = \"forward\" does"]);
+    let checked = ["sensitivity", "arm.toml", "--by", by, "--check", "--set", "sensitivity.method=\"adjoint\""];
+    place.springpot(&checked).ends(2, &["--check compares columns", "method = \"forward\""]);
+}

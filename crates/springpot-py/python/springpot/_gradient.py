@@ -30,7 +30,7 @@ def gradient(
         metric: the name of a [[metric]].
         by: paths of numbers, or names of parameters; default those of the scenario: ``by`` of [sensitivity], or all [[parameter]].
         set: values by path.
-        method: ``"forward"``, or ``"adjoint"`` where runs know it.
+        method: ``"forward"``, or ``"adjoint"``: back through the run, whose time does not grow with the number of parameters.
 
     Returns:
         The value, and by parameter the derivative, SI; NaN where there is none.

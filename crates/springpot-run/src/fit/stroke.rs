@@ -136,8 +136,8 @@ impl Stroke {
                 seeds: vec![Seed::Law { element: 0, law }],
             });
         }
-        let sensitivity = (!sought.is_empty())
-            .then(|| Arc::new(Sensitivity { parameters: sought, extended: None, control: false, columns: Vec::new() }));
+        let sensitivity =
+            (!sought.is_empty()).then(|| Arc::new(Sensitivity { parameters: sought, ..Sensitivity::default() }));
         let system = System {
             model: self.model.clone(),
             elements: vec![element],

@@ -38,6 +38,17 @@ pub fn value(metric: &Metric, t: &[f64], values: &[f64]) -> f64 {
 /// The derivatives of a metric where the values change by each of `changes`, row by row: exactly those of the number that [`value`] is, with the same
 /// rows at its extremes and within its band. NaN where the metric is, where a row that it rests on has none, and where it bends (the `rms` of zeros).
 pub fn gradient(metric: &Metric, t: &[f64], values: &[f64], changes: &[&[f64]]) -> Vec<f64> {
+    let Some((slopes, rows)) = slopes_of(metric, t, values) else { return vec![f64::NAN; changes.len()] };
+    changes.iter().map(|change| slopes.along(|k| change[rows[k]])).collect()
+}
+
+/// How much the value of each row counts in a metric: row and ∂m/∂y, a row that is there twice with the sum; `None` where the metric has no value.
+pub(crate) fn shares(metric: &Metric, t: &[f64], values: &[f64]) -> Option<Vec<(usize, f64)>> {
+    let (slopes, rows) = slopes_of(metric, t, values)?;
+    Some(slopes.of_places().map(|(k, slope)| (rows[k], slope)).collect())
+}
+
+fn slopes_of(metric: &Metric, t: &[f64], values: &[f64]) -> Option<(slopes::Slopes, Vec<usize>)> {
     let series = Series::new(t, values, metric.window);
     let slopes = match metric.kind {
         MetricKind::Min => levels::min_slopes(&series),
@@ -52,11 +63,7 @@ pub fn gradient(metric: &Metric, t: &[f64], values: &[f64], changes: &[&[f64]]) 
         MetricKind::LogDecrement => swings::log_decrement_slopes(&series, metric),
         MetricKind::ResidualVibration => swings::residual_slopes(&series, metric),
     };
-    if !value(metric, t, values).is_finite() {
-        return vec![f64::NAN; changes.len()];
-    }
-    let rows = series::rows_of(t, values, metric.window);
-    changes.iter().map(|change| slopes.along(|k| change[rows[k]])).collect()
+    value(metric, t, values).is_finite().then(|| (slopes, series::rows_of(t, values, metric.window)))
 }
 
 /// The columns of gradient.csv behind the swept parameters.

@@ -17,6 +17,11 @@ impl Slopes {
         Self(weights.collect())
     }
 
+    /// Places and slopes.
+    pub(super) fn of_places(&self) -> impl Iterator<Item = (usize, f64)> {
+        self.0.iter().copied()
+    }
+
     /// What the metric changes by where the rows change by `change`. A row that does not change adds nothing, whatever its slope.
     pub(super) fn along(&self, change: impl Fn(usize) -> f64) -> f64 {
         let changes = self.0.iter().map(|(k, slope)| (slope, change(*k)));

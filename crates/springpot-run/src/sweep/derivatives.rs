@@ -159,6 +159,8 @@ pub(super) struct Measured<'a> {
     pub(super) t: &'a [f64],
     /// Of each metric.
     pub(super) columns: Vec<OfMetric<'a>>,
+    /// What going back through the run found of each metric, where it did.
+    pub(super) gradients: Option<Vec<Option<Vec<f64>>>>,
 }
 
 /// The column of a metric, and its derivatives where they are known.
@@ -175,8 +177,10 @@ impl CaseDerivatives {
     ) {
         let Some(differentiated) = layout.differentiated() else { return };
         let of = plans.iter().zip(layout.metrics()).zip(&measured.columns);
-        for (((plan, wanted), (own, changes)), value) in of.zip(values) {
+        for (k, (((plan, wanted), (own, changes)), value)) in of.zip(values).enumerate() {
+            let back = measured.gradients.as_ref().and_then(|gradients| gradients[k].clone());
             let slopes = match changes {
+                _ if back.is_some() => back.unwrap_or_default(),
                 Some(changes) => gradient(&plan.metric, measured.t, own, changes),
                 None => vec![f64::NAN; differentiated.count],
             };

@@ -5,6 +5,7 @@ use super::curve::KeptCurve;
 use super::metrics::{CaseMetrics, Watched};
 use super::wanted::Window;
 use crate::table::Totals;
+use springpot::sensitivity::Tape;
 use springpot_scenario::Plan;
 use std::collections::BTreeMap;
 
@@ -94,8 +95,8 @@ impl<'a> Kept<'a> {
     }
 
     /// The metrics of the case whose swept values are `lead`.
-    pub(super) fn metrics(&self, layout: &Layout, plan: &Plan, lead: &str) -> CaseMetrics {
-        self.watched.as_ref().map_or_else(CaseMetrics::default, |watched| watched.metrics(layout, plan, lead))
+    pub(super) fn metrics(&self, layout: &Layout, asked: (&Plan, Option<&Tape>), lead: &str) -> CaseMetrics {
+        self.watched.as_ref().map_or_else(CaseMetrics::default, |watched| watched.metrics(layout, asked, lead))
     }
 
     /// Values of one row.

@@ -68,7 +68,11 @@ impl Layout {
             Differentiated::of(sensitivity, wanted.columns(), &selected)
         });
         let events: Vec<String> = plan.events.iter().map(|plan| plan.event.name.clone()).collect();
-        let times = sensitivity.filter(|_| !events.is_empty()).into_iter().flat_map(SensitivityPlan::times).collect();
+        let times = sensitivity
+            .filter(|own| !events.is_empty() && own.adjoint.is_none())
+            .into_iter()
+            .flat_map(SensitivityPlan::times)
+            .collect();
         Ok(Self { written, swept, selected, wanted, figures, events, metrics, times, differentiated })
     }
 

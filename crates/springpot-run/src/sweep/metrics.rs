@@ -3,9 +3,10 @@
 use super::Layout;
 use super::derivatives::{CaseDerivatives, Measured};
 use super::wanted::WantedMetric;
-use crate::metrics::{push_line, value};
+use crate::metrics::{push_line, shares, value};
 use serde::{Deserialize, Serialize};
-use springpot_scenario::Plan;
+use springpot::sensitivity::{Share, Tape};
+use springpot_scenario::{MetricPlan, Plan};
 
 /// What the metrics of a case are.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -56,8 +57,22 @@ impl Watched {
         }
     }
 
-    /// The metrics of the case whose swept values are `lead`.
-    pub(super) fn metrics(&self, layout: &Layout, plan: &Plan, lead: &str) -> CaseMetrics {
+    /// The gradients of the metrics, back through the run; `of` says which quantity each of them is of.
+    fn back(&self, (plans, of): (&[MetricPlan], &[Option<usize>]), tape: &Tape) -> Vec<Option<Vec<f64>>> {
+        let t = &self.columns[0];
+        let shares = plans.iter().zip(&self.of).zip(of).map(|((plan, (at, _)), quantity)| {
+            let rows = shares(&plan.metric, t, &self.columns[*at])?;
+            let share = |(row, slope): (usize, f64)| Some(Share { row, quantity: (*quantity)?, slope });
+            rows.into_iter().map(share).collect::<Option<Vec<Share>>>()
+        });
+        let shares: Vec<Option<Vec<Share>>> = shares.collect();
+        let known: Vec<Vec<Share>> = shares.iter().flatten().cloned().collect();
+        let mut gradients = tape.gradients(&known).into_iter();
+        shares.into_iter().map(|shares| shares.and_then(|_| gradients.next())).collect()
+    }
+
+    /// The metrics of the case whose swept values are `lead`, with their gradients back through `tape`, where there is one.
+    pub(super) fn metrics(&self, layout: &Layout, (plan, tape): (&Plan, Option<&Tape>), lead: &str) -> CaseMetrics {
         let (plans, mut metrics) = (&plan.metrics, CaseMetrics::default());
         let t = &self.columns[0];
         if t.is_empty() {
@@ -73,7 +88,8 @@ impl Watched {
             let columns = self.of.iter().map(|(at, changes)| {
                 (column(at), changes.as_ref().map(|changes| changes.iter().map(column).collect()))
             });
-            let measured = Measured { lead, t, columns: columns.collect() };
+            let gradients = tape.zip(sensitivity.adjoint.as_deref()).map(|(tape, of)| self.back((plans, of), tape));
+            let measured = Measured { lead, t, columns: columns.collect(), gradients };
             metrics.derivatives.gradients(layout, (plans, sensitivity), &measured, &metrics.values);
         }
         let is_own = plans.iter().zip(layout.metrics()).any(|(plan, wanted)| plan.metric != wanted.first);

@@ -8,6 +8,7 @@ use super::taken::{Taken, lead, push_row};
 use crate::table::disk::DiskFile;
 use crate::table::ordered::Section;
 use crate::table::{Statistics, push_fields, push_text};
+use springpot::sensitivity::Tape;
 use springpot::system::System;
 use springpot_scenario::Plan;
 use std::io;
@@ -143,8 +144,8 @@ impl Sink for Output<'_> {
         files.keep(&state, || sweep.file.sync())
     }
 
-    fn metrics(&self, plan: &Plan) -> CaseMetrics {
-        self.taken.metrics(plan)
+    fn metrics(&self, plan: &Plan, tape: Option<&Tape>) -> CaseMetrics {
+        self.taken.metrics(plan, tape)
     }
 }
 

@@ -11,6 +11,7 @@ use crate::table::sealed::{CHECKPOINT, SealError, open, seal};
 use crate::trouble::Trouble;
 use serde::{Deserialize, Serialize};
 use springpot::driver::{PassedLimit, Report};
+use springpot::sensitivity::Tape;
 use springpot::system::{Stop, System};
 use springpot_scenario::{Cases, Plan};
 use std::io;
@@ -249,7 +250,7 @@ impl Sink for Memory<'_> {
         Ok(())
     }
 
-    fn metrics(&self, plan: &Plan) -> CaseMetrics {
-        self.taken.metrics(plan)
+    fn metrics(&self, plan: &Plan, tape: Option<&Tape>) -> CaseMetrics {
+        self.taken.metrics(plan, tape)
     }
 }

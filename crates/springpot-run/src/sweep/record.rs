@@ -115,7 +115,7 @@ fn sensitivity(cases: &Cases, plan: &Plan, done: &[CaseResult]) -> Option<(Strin
             told
         })
         .collect();
-    let record = json!({ "parameters": parameters, "columns": columns, "lost": lost, "method": "forward" });
+    let record = json!({ "parameters": parameters, "columns": columns, "lost": lost, "method": sensitivity.method() });
     Some(("sensitivity".to_owned(), record))
 }
 

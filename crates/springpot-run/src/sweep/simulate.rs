@@ -5,7 +5,7 @@ use super::derivatives::Losses;
 use super::metrics::CaseMetrics;
 use crate::trouble::Trouble;
 use springpot::driver::{self, Checkpoint, LimitWatch, PassedLimit, Report, Rows, Watch};
-use springpot::sensitivity::Lost;
+use springpot::sensitivity::{Lost, Tape};
 use springpot::system::{RunError, Stop, System};
 use springpot_scenario::{Cases, Plan};
 use std::io;
@@ -24,8 +24,8 @@ pub(super) trait Sink {
     /// Keeps what it takes to go on.
     fn keep(&mut self, plan: &Plan, system: &System, resumed: Resumed) -> io::Result<()>;
 
-    /// What the metrics are of the rows so far.
-    fn metrics(&self, plan: &Plan) -> CaseMetrics;
+    /// What the metrics are of the rows so far, with their gradients back through `tape`, where there is one.
+    fn metrics(&self, plan: &Plan, tape: Option<&Tape>) -> CaseMetrics;
 }
 
 /// Where an earlier run left a case.
@@ -78,22 +78,27 @@ pub(super) fn simulate(
     let losses = Losses::of(&plan, Vec::new());
     let mut rows = CaseRows { sink, progress, watch, losses, plan: &plan, system: &system, places, row: Vec::new() };
     let (report, outcome) = match resumed {
-        None => driver::run(&system, &settings, &mut rows, stop),
+        None => driver::record(&system, &settings, &mut rows, stop),
         Some(Resumed { run, watch, lost }) => {
             rows.watch.go_on(watch);
             rows.losses = Losses::of(&plan, lost);
-            driver::resume(&system, &settings, run, &mut rows, stop)
+            let (report, outcome) = driver::resume(&system, &settings, run, &mut rows, stop);
+            (report, outcome.map(|()| None))
         }
     };
     let limits = rows.watch.passed();
     let lost = rows.losses.as_ref().map_or_else(Vec::new, |losses| losses.lost().to_vec());
+    let mut tape = None;
     let (error, interrupted) = match outcome {
-        Ok(()) => (None, false),
+        Ok(kept) => {
+            tape = kept;
+            (None, false)
+        }
         // What was kept last is what can be gone on from.
         Err(RunError::Output(error)) => return Err(error),
         Err(error) => (Some(Trouble::of(&error, &plan)), matches!(error, RunError::Interrupted { .. })),
     };
-    let (no_ledger, mut metrics) = (why_no_ledger(&system, &report), sink.metrics(&plan));
+    let (no_ledger, mut metrics) = (why_no_ledger(&system, &report), sink.metrics(&plan, tape.as_ref()));
     metrics.derivatives.lost = lost;
     Ok(Ran { report, error, interrupted, no_ledger, limits, metrics })
 }

@@ -5,6 +5,7 @@ use super::events::CaseEvents;
 use super::kept::Kept;
 use super::metrics::CaseMetrics;
 use crate::table::{Statistics, push_fields, push_number, push_text};
+use springpot::sensitivity::Tape;
 use springpot::system::System;
 use springpot_scenario::{Cases, Plan, SweptValue};
 
@@ -51,9 +52,10 @@ impl<'a> Taken<'a> {
     }
 
     /// What the metrics are of the rows so far, and what matters most.
-    pub(super) fn metrics(&self, plan: &Plan) -> CaseMetrics {
+    pub(super) fn metrics(&self, plan: &Plan, tape: Option<&Tape>) -> CaseMetrics {
         let kept = self.kept.as_ref();
-        let mut metrics = kept.map_or_else(CaseMetrics::default, |kept| kept.metrics(self.layout, plan, &self.lead));
+        let own = |kept: &Kept| kept.metrics(self.layout, (plan, tape), &self.lead);
+        let mut metrics = kept.map_or_else(CaseMetrics::default, own);
         if let Some(sensitivity) = &plan.sensitivity {
             metrics.derivatives.rank(self.layout, sensitivity, &self.statistics, &self.lead);
         }

@@ -212,7 +212,7 @@ fn one(ctx: &Context<'_>, root: &Table<'_>, k: usize, global: &[By]) -> Read<(Ga
         }
         path::set(&mut document, target, node.clone());
     }
-    let asked = Asked { by: bys, of: None, control: false, is_asked: true };
+    let asked = Asked { by: bys, of: None, control: false, adjoint: None, is_asked: true };
     sensitivity::mark(ctx, &mut document, &asked, 0)?;
     // Its own constants are those of the conditions.
     let inner = Context::new(ctx.catalog, ctx.folder, ctx.tables, ctx.robots).of_whole(&SCENARIO);

@@ -149,7 +149,7 @@ impl Fitting {
         let case = &self.records[record];
         let sought = case.asked.by.iter().zip(&self.plan.data[record].parameters).filter(|(_, k)| wanted[**k]);
         let by: Vec<By> = sought.map(|(by, _)| by.clone()).collect();
-        let asked = Asked { is_asked: !by.is_empty(), by, of: case.asked.of.clone(), control: false };
+        let asked = Asked { is_asked: !by.is_empty(), by, of: case.asked.of.clone(), control: false, adjoint: None };
         self.planned(&document, &asked).map_err(|refusals| refusals.to_string())
     }
 

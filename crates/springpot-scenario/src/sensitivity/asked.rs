@@ -28,6 +28,8 @@ pub(crate) struct Asked {
     pub(crate) by: Vec<By>,
     pub(crate) of: Option<Vec<ColumnGlob>>,
     pub(crate) control: bool,
+    /// Where gradients of metrics are found by going back through the run: what says so.
+    pub(crate) adjoint: Option<Place>,
     /// Whether anything is to be differentiated.
     pub(crate) is_asked: bool,
 }
@@ -52,14 +54,13 @@ pub(crate) fn read(root: &Table<'_>, axes: &[Axis], more: &[More]) -> Read<Optio
     if blocks.is_empty() && table.is_none() && more.is_empty() {
         return Ok(None);
     }
-    let mut asked = Asked { by: Vec::new(), of: None, control: true, is_asked: table.is_some() || !more.is_empty() };
+    let mut asked =
+        Asked { by: Vec::new(), of: None, control: true, adjoint: None, is_asked: table.is_some() || !more.is_empty() };
     if let Some(table) = &table {
         asked.control = table.flag("control")?;
         let method = table.word("method", "method of derivatives")?;
         if method == ADJOINT {
-            let field = table.require("method")?;
-            let message = format!("is {method:?}, which no run knows yet");
-            return Err(field.refuse(RefusalKind::Rule, message, Some("write method = \"forward\"".to_owned())));
+            asked.adjoint = Some(table.require("method")?.node.place.clone());
         }
         asked.of = table.get("of").map(|field| columns::globs(&field)).transpose()?;
     }

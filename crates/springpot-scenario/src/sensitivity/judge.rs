@@ -42,6 +42,7 @@ pub(crate) fn judge(root: &Table<'_>, plan: &Plan, asked: &Asked, first: usize) 
         for_metrics: Vec::new(),
         no_gradient: Vec::new(),
         left_out: Vec::new(),
+        adjoint: None,
         engine: None,
     };
     if !asked.is_asked {
@@ -61,14 +62,63 @@ pub(crate) fn judge(root: &Table<'_>, plan: &Plan, asked: &Asked, first: usize) 
         seeds: gather.seeds(plan, &extended),
     });
     let told = told.collect();
-    let Chosen { columns, for_metrics, no_gradient, known, left_out } = columns(root, plan, asked, &plain.parameters)?;
-    let engine = Sensitivity {
+    let mut engine = Sensitivity {
         parameters: told,
         extended: extended.is_extended().then(|| extended.system.clone()),
         control: asked.control,
-        columns: known,
+        columns: Vec::new(),
+        adjoint: None,
     };
+    if let Some(place) = &asked.adjoint {
+        let OfMetrics { quantities, places, no_gradient } = of_metrics(root, plan, place)?;
+        engine.adjoint = Some(quantities);
+        return Ok(SensitivityPlan { no_gradient, adjoint: Some(places), engine: Some(Arc::new(engine)), ..plain });
+    }
+    let Chosen { columns, for_metrics, no_gradient, known, left_out } = columns(root, plan, asked, &plain.parameters)?;
+    engine.columns = known;
     Ok(SensitivityPlan { columns, for_metrics, no_gradient, left_out, engine: Some(Arc::new(engine)), ..plain })
+}
+
+/// What metrics are of.
+#[derive(Default)]
+struct OfMetrics {
+    quantities: Vec<Quantity>,
+    /// Of each metric the place of its own among them, where that is known.
+    places: Vec<Option<usize>>,
+    /// The metrics of which no gradient is known.
+    no_gradient: Vec<String>,
+}
+
+/// What metrics are of, which `place` wants to be gone back through.
+fn of_metrics(root: &Table<'_>, plan: &Plan, place: &Place) -> Read<OfMetrics> {
+    if plan.metrics.is_empty() {
+        let message = "the adjoint gives gradients of metrics, and there is no [[metric]]";
+        let help = "add a [[metric]], or write method = \"forward\"".to_owned();
+        return Err(root.ctx.refuse(place.refuse(RefusalKind::Missing, message).help(help)));
+    }
+    let [acting, described] = [plan.acting_observables(), plan.observables()].each_ref().map(by_name);
+    let mut of = OfMetrics::default();
+    for metric in plan.metrics.iter().map(|plan| &plan.metric) {
+        if !described.get(&metric.of).copied().is_some_and(has_derivative) {
+            of.no_gradient.push(metric.name.clone());
+            of.places.push(None);
+            continue;
+        }
+        let own = acting.get(&metric.of);
+        of.places.push(own.map(|own| {
+            of.quantities.iter().position(|known| known == own).unwrap_or_else(|| {
+                of.quantities.push(*own);
+                of.quantities.len() - 1
+            })
+        }));
+    }
+    Ok(of)
+}
+
+/// What can be observed, by the names of columns.
+fn by_name(observables: &Observables) -> HashMap<String, Quantity> {
+    let quantities = observables.quantities().into_iter();
+    quantities.map(|quantity| (observables.named(quantity).to_string(), quantity)).collect()
 }
 
 /// What a parameter moves.
@@ -247,11 +297,6 @@ fn columns(root: &Table<'_>, plan: &Plan, asked: &Asked, parameters: &[Parameter
     };
     let all = plan.columns();
     let written = read_columns(root)?;
-    let by_name = |observables: Observables| -> HashMap<String, Quantity> {
-        let observables = if plan.output.tells_joint_losses { observables.with_joint_losses() } else { observables };
-        let quantities = observables.quantities().into_iter();
-        quantities.map(|quantity| (observables.named(quantity).to_string(), quantity)).collect()
-    };
     let [acting, described] = [plan.acting_observables(), plan.observables()].map(by_name);
     let globs = asked.of.as_deref().or(written.as_deref());
     for glob in asked.of.iter().flatten() {

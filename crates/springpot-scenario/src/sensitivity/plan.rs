@@ -1,6 +1,7 @@
 //! By what a run is differentiated, as it is read.
 
 use super::judge::over;
+use crate::keys::{ADJOINT, FORWARD};
 use crate::text::refusal::Place;
 use springpot::identification::{Prior, Scale};
 use springpot::sensitivity::Sensitivity;
@@ -20,6 +21,9 @@ pub struct SensitivityPlan {
     pub no_gradient: Vec<String>,
     /// Columns that are written and that no derivative is known of: nobody asked for them by name.
     pub left_out: Vec<String>,
+    /// Where gradients are found by going back through the run: of each metric the place of its column among [`Sensitivity::adjoint`], where that is
+    /// known. Rows tell no derivatives then.
+    pub adjoint: Option<Vec<Option<usize>>>,
     /// What the engine is told; `None` where nothing is differentiated: the parameters are only there.
     pub(crate) engine: Option<Arc<Sensitivity>>,
 }
@@ -69,6 +73,11 @@ impl SensitivityPlan {
     /// Whether rows tell derivatives.
     pub fn is_asked(&self) -> bool {
         self.engine.is_some()
+    }
+
+    /// How it is differentiated, as a file says it.
+    pub fn method(&self) -> &'static str {
+        if self.adjoint.is_some() { ADJOINT } else { FORWARD }
     }
 
     /// The derivatives of the time of an event, `d(t)/d(PARAMETER)`, in the order of the parameters.

@@ -305,7 +305,7 @@ fn what_cannot_be_a_parameter_is_refused_by_its_path() {
         ("[sensitivity]", "[sensitivity] has no parameter"),
         ("[sensitivity]\nby = []", "[sensitivity] has no parameter"),
         ("[sensitivity]\nby = \"element.tendon.k\"\nof = \"q.q9\"", "\"q.q9\" matches no column"),
-        ("[sensitivity]\nby = \"element.tendon.k\"\nmethod = \"adjoint\"", "no run knows yet"),
+        ("[sensitivity]\nby = \"element.tendon.k\"\nmethod = \"adjoint\"", "there is no [[metric]]"),
         ("[sensitivity]\nby = \"element.tendon.k\"\nhow = 1", "unknown key `how`"),
         ("[[parameter]]\nname = \"k\"", "has no `path`"),
         ("[[parameter]]\npath = \"element.tendon.k\"\nbounds = [60, 50]", "goes from 60 to 50"),

@@ -170,6 +170,15 @@ pub fn quadrature_defect(nodes: Nodes, values: &[f64]) -> f64 {
     (radau::GAMMA * product * coefficient).abs()
 }
 
+/// The cubic with coefficients `u` at θ, its integral from 0, and the integral of that.
+pub(crate) fn integrals(u: [f64; 4], theta: f64) -> [f64; 3] {
+    let [u0, u1, u2, u3] = u;
+    let value = u0 + theta * (u1 + theta * (u2 + theta * u3));
+    let once = theta * (u0 + theta * (u1 / 2.0 + theta * (u2 / 3.0 + theta * u3 / 4.0)));
+    let twice = theta * theta * (u0 / 2.0 + theta * (u1 / 6.0 + theta * (u2 / 12.0 + theta * u3 / 20.0)));
+    [value, once, twice]
+}
+
 /// Inverse Vandermonde matrices of the Radau nodes.
 pub(crate) struct Tableau {
     /// Of (0, c_1, c_2, 1): u_p = Σ_k rates[p][k] x'_k.

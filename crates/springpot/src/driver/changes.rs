@@ -3,7 +3,7 @@
 use super::time_loop::Driver;
 use crate::account::recorder::Recorder;
 use crate::equations::context::Context;
-use crate::equations::{Node, Variation};
+use crate::equations::{Node, Tape, Variation};
 use crate::observe::{ElementQuantity, Quantity, Snapshot};
 use crate::sensitivity::{Lost, Switched};
 use crate::signal::{Jet, Signal};
@@ -23,13 +23,39 @@ impl Driver {
         self.recorder.variation.iter().flat_map(|variation| variation.lost()).flatten()
     }
 
+    /// Whether the run is kept, to go back through it.
+    pub(super) fn is_recorded(&self) -> bool {
+        self.recorder.recording.is_some()
+    }
+
+    /// Keeps row `number`, which was read into `snapshot`, at θ of the step at hand or between two, where the run is kept.
+    ///
+    /// # Errors
+    /// What has no derivative.
+    pub(super) fn keep_row(&mut self, theta: Option<f64>, number: usize, snapshot: &Snapshot) -> Result<(), RunError> {
+        let Recorder { equations, recording, .. } = &mut self.recorder;
+        if let Some(recording) = recording {
+            recording.keep_row(equations, theta, number, snapshot)?;
+        }
+        Ok(())
+    }
+
+    /// What was kept of the run.
+    pub(super) fn into_tape(self) -> Option<Tape> {
+        self.recorder.recording.map(|recording| recording.into_tape())
+    }
+
     /// What parameters change on the far side of what was crossed, where velocities and accelerations were `before`; at a change of the robot's own
     /// where `is_own`.
     ///
     /// # Errors
     /// Where derivatives cannot go on.
     pub(super) fn settle_variation(&mut self, before: [&[f64]; 2], is_own: bool) -> Result<(), RunError> {
-        let Recorder { evaluations: [at, ..], equations, variation, .. } = &mut self.recorder;
+        let Recorder { evaluations: [at, ..], equations, variation, recording, .. } = &mut self.recorder;
+        if let Some(recording) = recording {
+            let a = self.solver.stepper().starts_with().unwrap_or(&at.a);
+            recording.settle(equations, Node { t: at.t, q: &at.q, v: &at.v, a }, [before, [&at.v, &at.a]], is_own)?;
+        }
         if let Some(variation) = variation {
             let a = self.solver.stepper().starts_with().unwrap_or(&at.a);
             variation.settle(equations, Node { t: at.t, q: &at.q, v: &at.v, a }, [before, [&at.v, &at.a]], is_own)?;

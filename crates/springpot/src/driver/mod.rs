@@ -24,6 +24,6 @@ pub use equation::{ElementTerm, Equation, EquationError};
 pub use limits::{LimitKind, LimitWatch, PassedLimit, Watch};
 pub use report::Report;
 pub use rows::Rows;
-pub use run::{resume, run};
+pub use run::{record, resume, run};
 pub use simulation::Simulation;
 pub use state::{Checkpoint, SimulationState};

@@ -44,6 +44,7 @@ impl<'a> Output<'a> {
     pub(super) fn emit(&mut self, cx: Context, driver: &mut Driver) -> Result<(), RunError> {
         while let Some(at) = self.next(&driver.recorder.settings).filter(|at| driver.shows(*at)) {
             let theta = driver.show(cx, at, self.written.rows, &mut self.snapshot)?;
+            driver.keep_row(theta, self.written.rows, &self.snapshot)?;
             if let Some(theta) = theta {
                 let t = self.snapshot.t();
                 if self.written.departure.is_none() {
@@ -65,7 +66,8 @@ impl<'a> Output<'a> {
         if self.written.last == Some(t) {
             return Ok(());
         }
-        driver.show(cx, t, self.written.rows, &mut self.snapshot)?;
+        let theta = driver.show(cx, t, self.written.rows, &mut self.snapshot)?;
+        driver.keep_row(theta, self.written.rows, &self.snapshot)?;
         self.write(cx, driver)
     }
 

@@ -7,6 +7,7 @@ use super::rows::Rows;
 use super::state::Checkpoint;
 use super::time_loop::{Driver, RowsAhead};
 use super::written::Written;
+use crate::equations::Tape;
 use crate::equations::context::Context;
 use crate::system::System;
 use crate::system::error::RunError;
@@ -17,6 +18,19 @@ use std::sync::atomic::Ordering;
 ///
 /// The report is true also where the run stops early: all rows up to `t_reached` were handed over.
 pub fn run(system: &System, settings: &Settings, rows: &mut dyn Rows, stop: &Stop) -> (Report, Result<(), RunError>) {
+    let looked_ahead = |driver: &Driver| driver.switches().into_iter().for_each(|switches| rows.looked_ahead(switches));
+    let driver = Driver::new(system.context(), settings, stop, looked_ahead);
+    let (report, outcome) = go(system, driver, rows, (Written::default(), WatchState::default()), stop);
+    (report, outcome.map(drop))
+}
+
+/// As [`run`], keeping what it takes to go back through it, where [`crate::sensitivity::Sensitivity::adjoint`] asks for that: no checkpoint is offered.
+pub fn record(
+    system: &System,
+    settings: &Settings,
+    rows: &mut dyn Rows,
+    stop: &Stop,
+) -> (Report, Result<Option<Tape>, RunError>) {
     let looked_ahead = |driver: &Driver| driver.switches().into_iter().for_each(|switches| rows.looked_ahead(switches));
     let driver = Driver::new(system.context(), settings, stop, looked_ahead);
     go(system, driver, rows, (Written::default(), WatchState::default()), stop)
@@ -34,7 +48,8 @@ pub fn resume(
     let Checkpoint { driver, written, events } = checkpoint;
     let looked_ahead = |driver: &Driver| driver.switches().into_iter().for_each(|switches| rows.looked_ahead(switches));
     let driver = Driver::resume(events.cx(system), settings, driver, stop, looked_ahead);
-    go(system, driver, rows, (written, events), stop)
+    let (report, outcome) = go(system, driver, rows, (written, events), stop);
+    (report, outcome.map(drop))
 }
 
 fn go(
@@ -43,7 +58,7 @@ fn go(
     rows: &mut dyn Rows,
     (written, events): (Written, WatchState),
     stop: &Stop,
-) -> (Report, Result<(), RunError>) {
+) -> (Report, Result<Option<Tape>, RunError>) {
     let mut driver = match driver {
         Ok(driver) => driver,
         Err(error) => return (Report::default(), Err(error)),
@@ -51,7 +66,8 @@ fn go(
     let mut output = Output::new(system.context(), rows, written);
     let events = Watch::new(system, &driver.recorder.settings, events, stop);
     let outcome = events.and_then(|events| to_the_end(system, &mut driver, &mut output, events, stop));
-    (output.report(&driver), outcome)
+    let report = output.report(&driver);
+    (report, outcome.map(|()| driver.into_tape()))
 }
 
 /// Takes step after step, `output` writing the rows.
@@ -76,7 +92,7 @@ fn to_the_end(
             return verdict(events.cx(system), driver, output);
         }
         let (t, stopped) = (driver.reached(), stop.load(Ordering::Relaxed));
-        if output.rows.wants_checkpoint(t, stopped) {
+        if output.rows.wants_checkpoint(t, stopped) && !driver.is_recorded() {
             let (driver, written) = (driver.state(events.cx(system)), output.written);
             output.rows.checkpoint(Checkpoint { driver, written, events: events.state().clone() })?;
         }

@@ -11,7 +11,7 @@ use crate::equations::context::Context;
 use crate::equations::evaluate::Evaluation;
 use crate::observe::Quantity;
 use crate::observe::Snapshot;
-use crate::sensitivity::Lost;
+use crate::sensitivity::{Lost, SensitivityError};
 use crate::system::error::RunError;
 use crate::system::row_times::RowTimes;
 use crate::system::settings::{Settings, Stop};
@@ -100,6 +100,9 @@ impl Simulation {
     /// # Errors
     /// As there, and [`RunError::Interrupted`]: asked again it goes on as if it had not been.
     pub fn step_until_unless(&mut self, until: f64, pauses: &mut dyn FnMut() -> bool) -> Result<bool, RunError> {
+        if self.driver.is_recorded() {
+            return Err(SensitivityError::Backwards { what: "a run that is driven step by step".into() }.into());
+        }
         let before = self.driver.steps();
         // What changes at the start of a step is crossed first, and so is what an event does at the end of the last one.
         while self.driver.steps() == before {

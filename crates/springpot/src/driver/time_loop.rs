@@ -8,10 +8,11 @@ use crate::collocation::{RADAU_NODES, STAGES};
 use crate::dynamics::Kinematics;
 use crate::equations::context::{Context, Held};
 use crate::equations::control::{Eye, Sampler};
-use crate::equations::{Node, Variation, VariationState};
+use crate::equations::{Node, Recording, Variation, VariationState};
 use crate::methods::solver::Solver;
 use crate::methods::stepper::{Behind, Target, Trial};
 use crate::observe::{Needs, Snapshot};
+use crate::sensitivity::SensitivityError;
 use crate::signal::agenda::FINEST;
 use crate::signal::{self, Agenda};
 use crate::system::Motion;
@@ -125,8 +126,20 @@ impl Driver {
     /// What parameters change at t = 0, where any are asked for.
     fn begin_variation(&mut self, cx: Context) -> Result<(), RunError> {
         let Self { sampler, recorder, .. } = self;
-        let Recorder { evaluations: [at, ..], equations, variation, .. } = recorder;
+        let Recorder { evaluations: [at, ..], equations, variation, recording, .. } = recorder;
         let Some(by) = &cx.system.sensitivity else { return Ok(()) };
+        if let Some(quantities) = &by.adjoint {
+            if !self.solver.stepper().is_recorded() {
+                return Err(SensitivityError::Backwards { what: "steps of one size, or a given motion".into() }.into());
+            }
+            let a = self.solver.stepper().starts_with().unwrap_or(&at.a);
+            let start = Node { t: at.t, q: &at.q, v: &at.v, a };
+            let mut begun = Recording::begin(cx.system, by, quantities, equations, start)?;
+            // Where the memories are built anew.
+            recording.take().into_iter().for_each(|earlier| begun.take_start(*earlier));
+            *recording = Some(Box::new(begun));
+            return Ok(());
+        }
         let has_fixed_steps = self.solver.stepper().fixed_step().is_some();
         let mut begun = Variation::new(cx.system, by, equations, has_fixed_steps)?;
         begun.hold(sampler.as_ref().and_then(|sampler| sampler.held_changes()));
@@ -297,7 +310,7 @@ impl Driver {
         }
         let acting = self.acting();
         let cx = Context { sampled: &acting, ..cx };
-        let varies = self.recorder.variation.is_some();
+        let varies = self.recorder.variation.is_some() || self.recorder.recording.is_some();
         if varies {
             self.vary_switches(cx, [self.t, after]);
         }

@@ -37,4 +37,5 @@ pub(crate) use scale::Scale;
 pub(crate) use solve::Solve;
 pub(crate) use state::EquationsState;
 pub use steady::SteadyError;
-pub(crate) use variation::{Found, ROW, STAGE, StepErrors, TANGENTS, Told, Variation, VariationState};
+pub(crate) use variation::{Found, ROW, Recording, STAGE, StepErrors, TANGENTS, Told, Variation, VariationState};
+pub use variation::{Share, Tape};

@@ -1,5 +1,6 @@
 //! What parameters change at the nodes of a step: the equations of motion linearised there, and their right sides.
 
+mod adjoint;
 mod control;
 mod energies;
 mod found;
@@ -26,6 +27,8 @@ use crate::law::{Derivative, Network, Response};
 use crate::model::{FrictionLaw, Model};
 use crate::sensitivity::{Seed, Sensitivity, SensitivityError};
 use crate::system::{Motion, System};
+pub(crate) use adjoint::Recording;
+pub use adjoint::{Share, Tape};
 use energies::Works;
 pub(crate) use found::Found;
 use inertias::Inertias;

@@ -125,6 +125,46 @@ impl History {
         Self { kernel, lambda, weight, fast_tail, z, last, tables: Vec::new(), oldest: 0 }
     }
 
+    /// The same kernel, which has seen nothing.
+    pub(super) fn without_past(&self) -> Self {
+        Self::new(self.kernel.clone())
+    }
+
+    /// Whether another one has the same kernel.
+    pub(super) fn has_kernel_of(&self, other: &Self) -> bool {
+        self.kernel.modes() == other.kernel.modes() && self.kernel.lambda.first() == other.kernel.lambda.first()
+    }
+
+    /// w e^{−X} of every mode at a lag.
+    pub(super) fn weighted(&self, lag: f64) -> Vec<f64> {
+        let (at, mut all) = (self.lag(lag), vec![[0.0; LANES]; self.z.len()]);
+        dispatch!(Level::new(), simd => {
+            for (k, block) in all.iter_mut().enumerate() {
+                at.weighted(simd, k).store_array(block);
+            }
+        });
+        all.as_flattened()[..self.kernel.modes()].to_vec()
+    }
+
+    /// e^{−X}, and ψ_0 … ψ_3, of every mode at a lag.
+    pub(super) fn moments(&self, lag: f64) -> (Vec<f64>, [Vec<f64>; CUBIC]) {
+        let (at, modes) = (self.lag(lag), self.kernel.modes());
+        let none = || vec![[0.0; LANES]; self.z.len()];
+        let (mut decays, [mut a, mut b, mut c, mut d]) = (none(), [none(), none(), none(), none()]);
+        dispatch!(Level::new(), simd => {
+            for k in 0..self.z.len() {
+                let (decay, psi) = at.moments(simd, k);
+                decay.store_array(&mut decays[k]);
+                psi[0].store_array(&mut a[k]);
+                psi[1].store_array(&mut b[k]);
+                psi[2].store_array(&mut c[k]);
+                psi[3].store_array(&mut d[k]);
+            }
+        });
+        let flat = |blocks: Vec<Block>| blocks.as_flattened()[..modes].to_vec();
+        (flat(decays), [flat(a), flat(b), flat(c), flat(d)])
+    }
+
     pub(super) fn kernel(&self) -> &Kernel {
         &self.kernel
     }

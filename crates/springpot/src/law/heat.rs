@@ -173,7 +173,7 @@ impl Heat {
     }
 
     /// Its numbers: those of the shift, of the thermal state and of the expansion, of those that are there.
-    pub(super) fn numbers(&self) -> Vec<f64> {
+    pub(crate) fn numbers(&self) -> Vec<f64> {
         let mut numbers = Vec::new();
         match self.shift {
             Some(Shift::Wlf { c1, c2, reference }) => numbers.extend([c1, c2, reference]),

@@ -44,6 +44,7 @@ mod named;
 mod piezo;
 mod piezo_stack;
 mod prandtl_ishlinskii;
+pub(crate) mod probe;
 mod rule;
 mod standard;
 mod thermoviscoelastic;

@@ -172,6 +172,16 @@ impl LawVariation {
         &self.variables
     }
 
+    /// The same, to be changed.
+    pub(crate) fn variables_mut(&mut self) -> &mut [f64] {
+        &mut self.variables
+    }
+
+    /// Of its memories.
+    pub(crate) fn memories_mut(&mut self) -> &mut [MemoryTangent] {
+        &mut self.memories
+    }
+
     /// Whether something of it is infinite at t = 0.
     pub(crate) fn is_singular(&self) -> bool {
         self.memories.iter().any(MemoryTangent::has_jumps)

@@ -1,5 +1,7 @@
 //! What a run is differentiated by: numbers of its system, and what each of them moves.
 
+pub use crate::equations::{Share, Tape};
+
 use crate::control::{Controller, ControllerNumber, ErrorTerm, FeedbackSlope, TermChange};
 use crate::law::Network;
 use crate::model::Model;
@@ -22,6 +24,9 @@ pub struct Sensitivity {
     pub control: bool,
     /// The derivatives that rows tell, in their order.
     pub columns: Vec<DerivativeColumn>,
+    /// Go back through the run in place of beside it: quantities of which rows are kept, so that a number that is made of them can be differentiated at
+    /// its end ([`Tape::gradients`]). Nothing shares in the choice of steps then, and rows tell no derivatives.
+    pub adjoint: Option<Vec<Quantity>>,
 }
 
 impl Sensitivity {
@@ -257,6 +262,12 @@ pub enum SensitivityError {
     /// No derivative is known of something that the run is made of.
     #[error("no derivative by a parameter is known of {what}")]
     Unknown {
+        /// What it is.
+        what: String,
+    },
+    /// Derivatives are known of it, but not by going back through the run.
+    #[error("the adjoint does not go back through {what}: method = \"forward\" does")]
+    Backwards {
         /// What it is.
         what: String,
     },

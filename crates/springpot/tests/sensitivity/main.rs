@@ -1,5 +1,6 @@
 //! Derivatives of whole runs by their parameters, against differences of whole runs.
 
+mod adjoint;
 mod laws;
 mod replay;
 #[path = "../support/mod.rs"]

@@ -13,7 +13,7 @@ use springpot::system::{RunError, Stop};
 use springpot_run::table::disk::Disk;
 use springpot_run::trial::{Varied, rows};
 use springpot_run::{Asked, Finished, NewRun, Planned};
-use springpot_scenario::{Plan, Refusals};
+use springpot_scenario::{Plan, RefusalKind, Refusals};
 
 /// Why there is nothing to tell.
 enum Untold {
@@ -87,6 +87,14 @@ fn asked(options: &SensitivityOptions, catalog: &Catalog) -> Result<Asked, Refus
         let stop = Stop::new(true);
         Ok(Planned::of(&asked.scenario()?, catalog, &stop, &mut |_| {}).is_ok())
     };
+    if options.check
+        && let Ok(planned) = Planned::of(&asked.scenario()?, catalog, &Stop::new(true), &mut |_| {})
+        && let Some(sensitivity) = planned.plan.sensitivity.filter(|sensitivity| sensitivity.adjoint.is_some())
+    {
+        let message = "--check compares columns of derivatives, which the adjoint does not have";
+        let refusal = sensitivity.parameters[0].place.refuse(RefusalKind::Rule, message);
+        return Err(refusal.help("take method = \"forward\"").into());
+    }
     // Figures of the file may draw derivatives that are not asked for here.
     if (!options.by.is_empty() || !options.of.is_empty()) && !is_whole(&asked)? {
         let mut without = asked.clone();

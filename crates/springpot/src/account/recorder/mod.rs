@@ -13,7 +13,7 @@ use crate::equations::Variation;
 use crate::equations::context::Context;
 use crate::equations::evaluate::{ElementEvaluation, Evaluation, Scratch};
 use crate::equations::on_grid::{GridDerivatives, on_grid_observation};
-use crate::equations::{Equations, EquationsState};
+use crate::equations::{Equations, EquationsState, Recording};
 use crate::law::heat::TEMPERATURE;
 use crate::law::{Observation, Point, State};
 use crate::observe::evaluation::ElementRow;
@@ -45,6 +45,8 @@ pub(crate) struct Recorder {
     pub(crate) powers: StepPowers,
     /// What parameters change, where any are asked for.
     pub(crate) variation: Option<Box<Variation>>,
+    /// What is kept to go back through the run, where that is asked for.
+    pub(crate) recording: Option<Box<Recording>>,
     /// Whether actuators move the elements, as along kinematics given in advance.
     pub(crate) takes_elements_work: bool,
     /// Whether the force of each element is without bound behind a jump at t = 0, and its impulse is given at once.
@@ -91,6 +93,7 @@ impl Recorder {
             equations: Equations::new(cx.system, settings.fixed_step.is_some()),
             powers: StepPowers::default(),
             variation: None,
+            recording: None,
             takes_elements_work: true,
             jolts: vec![false; cx.system.elements.len()],
             grid: vec![None; cx.system.elements.len()],
@@ -214,6 +217,9 @@ impl Recorder {
         self.equations.take_ends(cx, ends)?;
         if let Some(variation) = &mut self.variation {
             variation.commit(&self.equations);
+        }
+        if let Some(recording) = &mut self.recording {
+            recording.commit(&self.equations, self.evaluations[STAGES].t)?;
         }
         let (actuators, joints) = self.work_until(1.0);
         let end = &self.evaluations[STAGES];

@@ -31,7 +31,7 @@ impl MemoryTangent {
         let shortest = memory.shortest_lag(h, step.places);
         let missing = past.kernel().missing(shortest);
         let front: Vec<f64> = (1..=missing).rev().map(|k| past.kernel().faster(k).0).collect();
-        let mut fast = (missing > 0).then(|| self.settled(past, &front, h));
+        let mut fast = (missing > 0 && self.ports.is_none()).then(|| self.settled(past, &front, h));
 
         for p in 0..4 {
             self.piece.row_mut(p).copy_from_slice(&delta_u[p * parameters..][..parameters]);
@@ -53,16 +53,20 @@ impl MemoryTangent {
                 *travelled += payment;
             }
         }
-        if let Some(fast) = &mut fast {
-            self.grow(fast, &front, h);
-        }
-        self.modes.advance(past.lag(h), h, &self.piece);
-        self.fold(memory, past, step.start.t + h, h);
         let surplus = if missing > 0 { 0 } else { past.surplus(shortest) };
-        if let Some(fast) = fast {
-            self.modes.put_in_front(fast);
+        if let Some(ports) = &mut self.ports {
+            ports.commit(past, h, [missing, surplus]);
+        } else {
+            if let Some(fast) = &mut fast {
+                self.grow(fast, &front, h);
+            }
+            self.modes.advance(past.lag(h), h, &self.piece);
+            self.fold(memory, past, step.start.t + h, h);
+            if let Some(fast) = fast {
+                self.modes.put_in_front(fast);
+            }
+            self.modes.drop_front(surplus);
         }
-        self.modes.drop_front(surplus);
         if let Some(by_order) = &mut self.by_order {
             by_order.slow.advance(h, &paid.u, 0.0);
             by_order.follow(past.kernel(), &front, surplus);

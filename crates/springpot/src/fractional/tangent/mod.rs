@@ -47,19 +47,23 @@
 //! # Ok::<(), springpot::fractional::KernelError>(())
 //! ```
 
+mod adjoint;
 mod ask;
 mod columns;
 mod commit;
 mod energy;
 mod jump;
 mod order;
+mod ports;
 mod state;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use adjoint::{MemoryAdjoint, PastOfStep};
 pub use ask::Singular;
 pub use commit::TangentEnd;
 pub use energy::EnergyTangent;
+pub(crate) use ports::PortColumns;
 
 use super::history::History;
 use super::kernel::KernelError;
@@ -72,6 +76,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Level, dispatch, f64x8};
 use jump::Jump;
 use order::ByOrder;
+use ports::Ports;
 use serde::{Deserialize, Serialize};
 
 /// What P parameters move of a memory at t = 0, P numbers each.
@@ -167,6 +172,9 @@ pub struct MemoryTangent {
     piece: Columns,
     /// Where α moves.
     by_order: Option<ByOrder>,
+    /// Columns that stand for its past, where it is to be told what that does.
+    #[serde(skip)]
+    ports: Option<Ports>,
 }
 
 impl MemoryTangent {
@@ -197,6 +205,7 @@ impl MemoryTangent {
             modes: Columns::new(parameters, 0),
             piece: Columns::new(parameters, 4),
             by_order: None,
+            ports: None,
         };
         tangent.jump_at_start(memory, seeds.jump);
         tangent.open(memory);
@@ -268,6 +277,16 @@ impl MemoryTangent {
     /// Adds what Σ_k w_k e^{−λ_k τ} z_k moves with its z, at Q lags, Q rows of P.
     fn add_histories<const Q: usize>(&self, past: &History, lags: [f64; Q], out: &mut [f64]) {
         if past.is_empty() {
+            return;
+        }
+        if let Some(ports) = &self.ports {
+            for (row, lag) in out.chunks_exact_mut(self.parameters).zip(lags) {
+                // Without room for it nothing of it is known.
+                match ports.column(lag) {
+                    Some(column) => row[column] += 1.0,
+                    None => row.fill(f64::NAN),
+                }
+            }
             return;
         }
         let at = lags.map(|lag| past.lag(lag));

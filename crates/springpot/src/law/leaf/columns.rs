@@ -126,7 +126,7 @@ impl<L: Columns> ByColumns for L {
     }
 
     fn vary(&self, step: &Step, state: StateRef, told: &StepVariation, own: VariationRef, forces: &mut [f64]) {
-        each(self, (step, AtNodes::Still), state, told, &own, &mut |p, leaf, step, _, solved| {
+        each(self, (step, AtNodes::Still, &|_| false), state, told, &own, &mut |p, leaf, step, _, solved| {
             for (i, forces) in forces.chunks_exact_mut(own.count).enumerate() {
                 forces[p] += leaf.force(step, solved, i + 1).slope;
             }
@@ -139,7 +139,7 @@ impl<L: Columns> ByColumns for L {
         let before = variables.to_vec();
         let own = VariationRef { count, numbers, memories: &[], variables: &before };
         variables.fill(0.0);
-        each(self, (step, AtNodes::AsTold), state, told, &own, &mut |p, leaf, step, start, solved| {
+        each(self, (step, AtNodes::AsTold, &|_| false), state, told, &own, &mut |p, leaf, step, start, solved| {
             let mut variables = variables.iter_mut().skip(p).step_by(count);
             leaf.at_end(step, start, solved, &mut |variable: Dual| {
                 variables.next().into_iter().for_each(|own| *own = variable.slope);
@@ -149,7 +149,7 @@ impl<L: Columns> ByColumns for L {
     }
 
     fn powers(&self, step: &Step, state: StateRef, told: &StepVariation, own: VariationRef, sum: &mut PowersVariation) {
-        each(self, (step, AtNodes::AsTold), state, told, &own, &mut |p, leaf, step, start, solved| {
+        each(self, (step, AtNodes::AsTold, &|_| false), state, told, &own, &mut |p, leaf, step, start, solved| {
             for k in 0..=step.nodes.count() {
                 let power = leaf.power(step, start, solved, k);
                 sum.dissipation[k * own.count + p] += power.dissipation.slope;
@@ -161,7 +161,7 @@ impl<L: Columns> ByColumns for L {
     }
 
     fn errors(&self, step: &Step, state: StateRef, told: &StepVariation, own: VariationRef, take: TakeError) {
-        each(self, (step, AtNodes::AsTold), state, told, &own, &mut |p, leaf, dual, start, solved| {
+        each(self, (step, AtNodes::AsTold, &|_| false), state, told, &own, &mut |p, leaf, dual, start, solved| {
             let mut variable = 0..;
             leaf.each_rate(dual, start, solved, &mut |end: Dual, rates: Values<Dual>| {
                 let changes = rates.map(|rate| rate.slope);
@@ -198,16 +198,27 @@ impl<L: Columns> ByColumns for L {
             let stroke = Dual { value: at.stroke, slope: told.stroke[p] };
             (stroke, Dual { value: at.rate, slope: told.rate[p] }, told.inputs_of(at, p, own.count))
         };
+        let moves_here = |p: usize| {
+            let of_inputs = told.inputs.iter().flat_map(|blocks| blocks.iter().skip(p).step_by(own.count.max(1)));
+            told.stroke[p] != 0.0 || told.rate[p] != 0.0 || of_inputs.into_iter().any(|change| *change != 0.0)
+        };
         match (when, &told.step) {
             (When::Within(step, theta), Some(around)) => {
-                each(self, (step, AtNodes::AsTold), state, around, &own, &mut |p, leaf, step, start, solved| {
-                    let (stroke, rate, inputs) = moving(p);
-                    let at = Point { t: at.t, stroke, rate, inputs: &inputs };
-                    add(p, leaf.within(step, theta, &at, start, solved));
-                    tell(&mut tells[first..], (p, own.count), |take| {
-                        leaf.told(Some((step, theta, solved)), &at, start, take)
-                    });
-                });
+                each(
+                    self,
+                    (step, AtNodes::AsTold, &moves_here),
+                    state,
+                    around,
+                    &own,
+                    &mut |p, leaf, step, start, solved| {
+                        let (stroke, rate, inputs) = moving(p);
+                        let at = Point { t: at.t, stroke, rate, inputs: &inputs };
+                        add(p, leaf.within(step, theta, &at, start, solved));
+                        tell(&mut tells[first..], (p, own.count), |take| {
+                            leaf.told(Some((step, theta, solved)), &at, start, take)
+                        });
+                    },
+                );
             }
             _ => {
                 for p in 0..own.count {
@@ -239,12 +250,12 @@ fn lose(leaf: &dyn Leaf, told: &StepVariation, blocks: &mut [f64]) {
     }
 }
 
-/// Hands over every column in which something changes: its parameter, the leaf, the step, its inner variables at the start, and the step worked
+/// Hands over every column in which something changes, in the step or beside it: its parameter, the leaf, the step, its inner variables at the start, and the step worked
 /// out.
 #[allow(clippy::type_complexity)]
 fn each<L: Columns>(
     leaf: &L,
-    (step, at_nodes): (&Step, AtNodes),
+    (step, at_nodes, moves_beside): (&Step, AtNodes, &dyn Fn(usize) -> bool),
     state: StateRef,
     told: &StepVariation,
     own: &VariationRef,
@@ -254,7 +265,7 @@ fn each<L: Columns>(
     for p in 0..own.count {
         let (of_column, is_still) = column(leaf, own, p);
         let (told, start) = (told.column(step, p, at_nodes), variables(state.variables, own, p));
-        if is_still && told.is_still() && start.iter().all(|variable| variable.slope == 0.0) {
+        if is_still && told.is_still() && !moves_beside(p) && start.iter().all(|variable| variable.slope == 0.0) {
             continue;
         }
         let found = found.get_or_insert_with(|| leaf.solved(step, state.variables));

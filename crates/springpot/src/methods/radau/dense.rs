@@ -1,6 +1,7 @@
 //! Positions, velocities and accelerations inside a step.
 
 use super::step::RadauStep;
+use crate::collocation::integrals;
 use crate::equations::context::Context;
 use crate::equations::drives::drive;
 use crate::equations::evaluate::Evaluation;
@@ -54,13 +55,4 @@ impl Within for Dense<'_> {
         model.integrate_into(&origin.q, &scratch.xi, &mut evaluation.q);
         drive(cx, equations.forward(), t, evaluation);
     }
-}
-
-/// The cubic with coefficients `u` at θ, its integral from 0, and the integral of that.
-pub(super) fn integrals(u: [f64; 4], theta: f64) -> [f64; 3] {
-    let [u0, u1, u2, u3] = u;
-    let value = u0 + theta * (u1 + theta * (u2 + theta * u3));
-    let once = theta * (u0 + theta * (u1 / 2.0 + theta * (u2 / 3.0 + theta * u3 / 4.0)));
-    let twice = theta * theta * (u0 / 2.0 + theta * (u1 / 6.0 + theta * (u2 / 12.0 + theta * u3 / 20.0)));
-    [value, once, twice]
 }

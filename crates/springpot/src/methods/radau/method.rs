@@ -186,13 +186,20 @@ impl Stepper for Radau {
     }
 
     fn vary(&mut self, _: Context, recorder: &mut Recorder, step: &Target) -> Result<(), RunError> {
-        let Recorder { equations, variation, .. } = recorder;
+        let Recorder { equations, variation, recording, .. } = recorder;
+        if let Some(recording) = recording {
+            self.step.record(equations, recording, step.size, step.end_inputs());
+        }
         let Some(variation) = variation else { return Ok(()) };
         // What shares in the choice of steps was worked out with the step.
         if variation.shares_in_steps() || self.step.vary(equations, variation, step.size, step.end_inputs()) {
             return Ok(());
         }
         Err(SensitivityError::Unknown { what: format!("a motion without inertia at t = {} s", step.from) }.into())
+    }
+
+    fn is_recorded(&self) -> bool {
+        true
     }
 
     fn starts_with(&self) -> Option<&[f64]> {

@@ -4,11 +4,10 @@
 //! linearised equations of motion of all stages at once, with the slopes at the stages themselves: J δa = −ρ, ρ what is unbalanced where the
 //! accelerations stay. Joints that turn freely are not linear in that; what J does not know of them is left over, and taken up by the same J again.
 
-use super::dense::integrals;
 use super::estimate::raw;
 use super::step::{EstimateScratch, RadauStep};
 use crate::collocation::radau::{A, A_SQUARED, GAMMA};
-use crate::collocation::{RADAU_NODES, STAGES, TABLEAU};
+use crate::collocation::{RADAU_NODES, STAGES, TABLEAU, integrals};
 use crate::equations::{Equations, Found, ROW, StepErrors, TANGENTS, Variation};
 use crate::linalg::Lu;
 use crate::model::{FreeTurn, Turned, add_turned};
@@ -270,48 +269,11 @@ impl RadauStep {
         (free, h): (&[usize], f64),
         found: &mut Found,
     ) -> bool {
-        let (n, count, own) = (variation.nv(), variation.count(), free.len());
+        let (count, own) = (variation.count(), free.len());
         let size = STAGES * own;
         let mut solve = std::mem::take(&mut variation.solve);
-        let regular = !found.is_first()
-            || solve.factor(size, |matrix| {
-                for i in 0..STAGES {
-                    let node = &variation.nodes[i + 1];
-                    for j in 0..STAGES {
-                        let (damping, stiffness) = (h * A[i][j], h * h * A_SQUARED[i][j]);
-                        for (r, &row) in free.iter().enumerate() {
-                            let line = &mut matrix[(i * own + r) * size + j * own..][..own];
-                            for (entry, &column) in line.iter_mut().zip(free) {
-                                let at = row * n + column;
-                                *entry = damping * node.slopes.d_v[at] + stiffness * node.slopes.d_q[at];
-                                if i == j {
-                                    *entry += node.slopes.d_a[at];
-                                }
-                            }
-                        }
-                    }
-                    let felt = |row: usize| !variation.relieves(i + 1, row);
-                    for e in 0..variation.elements.len() {
-                        let response = equations.bank.response(e);
-                        let [on, _] = &node.gradients[e];
-                        for j in 0..STAGES {
-                            for m in 0..STAGES {
-                                let [gradient, bend] = &variation.nodes[m + 1].gradients[e];
-                                let (stroke, rate) = (response.d_stroke[i][m], response.d_rate[i][m]);
-                                let (twice, once) = (h * h * A_SQUARED[m][j], h * A[m][j]);
-                                let [by_gradient, by_bend] = [twice * stroke + once * rate, twice * rate];
-                                for (r, &row) in free.iter().enumerate().filter(|(_, row)| felt(**row)) {
-                                    let line = &mut matrix[(i * own + r) * size + j * own..][..own];
-                                    for (entry, &column) in line.iter_mut().zip(free) {
-                                        *entry += on[row] * (by_gradient * gradient[column] + by_bend * bend[column]);
-                                    }
-                                }
-                            }
-                        }
-                    }
-                    self.answer_to_state(equations, variation, (i, free, h), matrix);
-                }
-            });
+        let regular =
+            !found.is_first() || solve.factor(size, |matrix| self.fill_matrix(equations, variation, (free, h), matrix));
         if regular {
             let mut right = std::mem::take(&mut variation.right);
             right.clear();
@@ -342,6 +304,54 @@ impl RadauStep {
         }
         variation.solve = solve;
         regular && !found.fails()
+    }
+
+    /// J into zeros.
+    pub(super) fn fill_matrix(
+        &self,
+        equations: &Equations,
+        variation: &Variation,
+        (free, h): (&[usize], f64),
+        matrix: &mut [f64],
+    ) {
+        let (n, own) = (variation.nv(), free.len());
+        let size = STAGES * own;
+        for i in 0..STAGES {
+            let node = &variation.nodes[i + 1];
+            for j in 0..STAGES {
+                let (damping, stiffness) = (h * A[i][j], h * h * A_SQUARED[i][j]);
+                for (r, &row) in free.iter().enumerate() {
+                    let line = &mut matrix[(i * own + r) * size + j * own..][..own];
+                    for (entry, &column) in line.iter_mut().zip(free) {
+                        let at = row * n + column;
+                        *entry = damping * node.slopes.d_v[at] + stiffness * node.slopes.d_q[at];
+                        if i == j {
+                            *entry += node.slopes.d_a[at];
+                        }
+                    }
+                }
+            }
+            let felt = |row: usize| !variation.relieves(i + 1, row);
+            for e in 0..variation.elements.len() {
+                let response = equations.bank.response(e);
+                let [on, _] = &node.gradients[e];
+                for j in 0..STAGES {
+                    for m in 0..STAGES {
+                        let [gradient, bend] = &variation.nodes[m + 1].gradients[e];
+                        let (stroke, rate) = (response.d_stroke[i][m], response.d_rate[i][m]);
+                        let (twice, once) = (h * h * A_SQUARED[m][j], h * A[m][j]);
+                        let [by_gradient, by_bend] = [twice * stroke + once * rate, twice * rate];
+                        for (r, &row) in free.iter().enumerate().filter(|(_, row)| felt(**row)) {
+                            let line = &mut matrix[(i * own + r) * size + j * own..][..own];
+                            for (entry, &column) in line.iter_mut().zip(free) {
+                                *entry += on[row] * (by_gradient * gradient[column] + by_bend * bend[column]);
+                            }
+                        }
+                    }
+                }
+            }
+            self.answer_to_state(equations, variation, (i, free, h), matrix);
+        }
     }
 
     /// Adds how what follows from the state answers to the accelerations to the lines of stage `i` of the matrix: terms of errors, and inputs.
