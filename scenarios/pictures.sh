@@ -19,6 +19,8 @@ panda_gripper_path elbow
 piezo_cancels place
 spencer_sine force_over_velocity
 piezo_stack stroke
+mr_damper force
+ur5_mount elbow
 tendon_finger tension
 foam_pad settling
 foam_pad_temperature force

@@ -368,9 +368,9 @@ pub(crate) struct FitOptions {
     /// How intervals are found, in place of that of [fit]: wald, profile or bootstrap(COUNT)
     #[arg(long, value_name = "HOW")]
     pub(crate) intervals: Option<String>,
-    /// Laws to be fitted one after the other, in place of those of [fit]
-    #[arg(long, value_name = "LAW,...", value_delimiter = ',')]
-    pub(crate) laws: Vec<String>,
+    /// Laws, or networks, to be fitted one after the other, in place of those of [fit]
+    #[arg(long, value_name = "LAW,...")]
+    pub(crate) laws: Option<String>,
     /// Folder for the files [default: results/SCENARIO]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,

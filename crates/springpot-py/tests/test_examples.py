@@ -12,7 +12,13 @@ import pytest
 from conftest import PACKAGE
 
 EXAMPLES = PACKAGE / "examples"
-NOTEBOOKS = ["controller_in_python", "half_derivative_of_my_data", "papers_in_ten_cells", "ur5_rubber_mount"]
+NOTEBOOKS = [
+    "controller_in_python",
+    "half_derivative_of_my_data",
+    "papers_in_ten_cells",
+    "ur5_mount_from_its_record",
+    "ur5_rubber_mount",
+]
 SECONDS = 20  # of two cores
 
 

@@ -538,7 +538,7 @@ impl<'a> Field<'a> {
                 if (low..=high).contains(&value) {
                     return Ok(value);
                 }
-                let message = format!("is {}, outside {low:e} … {high}", self.node.label());
+                let message = format!("is {}, outside {low:?} … {high}", self.node.label());
                 Err(self.refuse(RefusalKind::OutOfRange, message, Some(right.to_owned())))
             }
         }

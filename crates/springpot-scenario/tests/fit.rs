@@ -53,6 +53,7 @@ fn files(folder: &Path) {
     put("nan.csv", "t,x\n0,0.1\n0.5,nan\n1,-0.05\n");
     put("units.csv", "f,E1,E2\nHz, MPa, kPa\n0.1,110,20\n1,130,50\n");
     put("none.csv", "t,x\n");
+    put("zero.csv", "f,E1,E2\n0,110,20\n1,130,50\n");
 }
 
 fn read(text: &str, folder: &Path) -> Result<Fitting, String> {
@@ -64,7 +65,29 @@ fn read(text: &str, folder: &Path) -> Result<Fitting, String> {
 #[test]
 fn what_is_wrong_is_refused_where_it_stands() {
     let folder = tempfile::tempdir().unwrap();
-    let cases: [(&str, &str, &str, &str); 31] = [
+    let cases: [(&str, &str, &str, &str); 38] = [
+        (PAD, "element.pad.alpha\"", "element.pad.law\"", "a.toml:7:8: element.pad.law cannot be a parameter: it is the text"),
+        (
+            PAD,
+            "element.pad.alpha\"",
+            "element.pad.alpha\"\nbounds = [0.2, 1.5]",
+            "a.toml:8:10: `bounds` of parameter \"alpha\" are 0.2 … 1.5, and its place takes 0 … 1",
+        ),
+        (
+            PAD,
+            "element.pad.alpha\"",
+            "element.pad.alpha\"\nbounds = [0.6, 0.9]",
+            "a.toml:8:10: `bounds` of parameter \"alpha\" is 0.6 … 0.9, and the file begins outside, at 0.5",
+        ),
+        (
+            PAD,
+            "element.pad.alpha\"",
+            "element.pad.c\"\nscale = \"logit\"",
+            "a.toml:5:1: the parameter \"alpha\": it moves between bounds, and has not both",
+        ),
+        (PAD, "dma.csv", "zero.csv", "a.toml:12:7: `csv` of data \"dma\" has 0 in frequency on line 2"),
+        (PAD, "dma.csv", "units.csv", "a.toml:13:40: `storage` of `columns` of data \"dma\" has the unit \"MPa\""),
+        (PAD, "[[data]]", "[fit]\nlaws = [\"series(spring(k), springpot(c))\"]\n[[data]]", "a.toml:9:28: `laws` of [fit]: `springpot` takes 2 names, not 1"),
         (PAD, "[[data]]", "[[dat]]", "a.toml:8:3: unknown key `dat`"),
         (PAD, "kind = \"dma\"", "kind = \"dmc\"", "a.toml:10:8: `kind` of data \"dma\" is \"dmc\""),
         (PAD, "element = \"pad\"\n", "", "a.toml:8:1: data \"dma\" has no `element`"),

@@ -27,10 +27,25 @@ fn read(options: &FitOptions, catalog: &Catalog) -> Result<Fitting, Refusals> {
     if let Some(intervals) = &options.intervals {
         scenario.set_anew(&format!("fit.intervals={intervals:?}"))?;
     }
-    if !options.laws.is_empty() {
-        scenario.set_anew(&format!("fit.laws={:?}", options.laws))?;
+    if let Some(laws) = &options.laws {
+        scenario.set_anew(&format!("fit.laws={:?}", apart(laws)))?;
     }
     scenario.fit(catalog)
+}
+
+/// Laws between commas, those inside networks not among these.
+fn apart(laws: &str) -> Vec<&str> {
+    let mut depth = 0_usize;
+    laws.split(|letter| {
+        match letter {
+            '(' => depth += 1,
+            ')' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        letter == ',' && depth == 0
+    })
+    .map(str::trim)
+    .collect()
 }
 
 fn carry_out(options: &FitOptions, fitting: Fitting) -> Ending {

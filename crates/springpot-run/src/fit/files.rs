@@ -147,7 +147,7 @@ pub fn told(outcome: &Outcome) -> String {
         let [low, high] = outcome.intervals[j];
         let sd = match (fit.at_bound[j], fit.sd(j)) {
             (Some(_), _) => "at its bound".to_owned(),
-            (None, sd) if sd.is_finite() => format!("± {}", rough(sd)),
+            (None, sd) if sd.is_finite() && !fit.unseen.contains(&j) => format!("± {}", rough(sd)),
             (None, _) => "not determined".to_owned(),
         };
         let interval = match fit.at_bound[j] {
@@ -182,7 +182,7 @@ pub fn told(outcome: &Outcome) -> String {
                 column.name.clone(),
                 score.rows.len().to_string(),
                 with_unit_of(rough(own.rms), &column.unit),
-                format!("{:.4}", own.r2),
+                if own.r2.is_finite() { format!("{:.4}", own.r2) } else { "–".to_owned() },
             ]);
         }
     }

@@ -6,6 +6,8 @@ use springpot_scenario::{DataKind, Fitting};
 
 /// Changes of the cost that are those of the steps of a run, as a share.
 const NOISE: f64 = 1e-9;
+/// The same of a part of the samples.
+const ROUGH_NOISE: f64 = 1e-6;
 
 /// Residuals of the records that are fitted.
 pub(super) struct Problem<'a> {
@@ -18,6 +20,7 @@ pub(super) struct Problem<'a> {
     past: Vec<Vec<Vec<f64>>>,
     /// Rows of runs behind this share of their span are left out.
     pub(super) horizon: f64,
+    noise: f64,
 }
 
 impl<'a> Problem<'a> {
@@ -45,7 +48,8 @@ impl<'a> Problem<'a> {
             }
         }
         let parameters = plan.parameters.iter().map(|one| one.sought.clone()).collect();
-        Ok(Self { parameters, series, records, first, past, horizon: 1.0 })
+        let noise = if most == usize::MAX { NOISE } else { ROUGH_NOISE };
+        Ok(Self { parameters, series, records, first, past, horizon: 1.0, noise })
     }
 
     /// Whether a stroke has more rows than that.
@@ -187,7 +191,7 @@ impl identification::Problem for Problem<'_> {
     }
 
     fn noise(&self) -> f64 {
-        if self.takes_steps() { NOISE } else { 0.0 }
+        if self.takes_steps() { self.noise } else { 0.0 }
     }
 
     fn rows(&self, values: &[f64], wanted: &[bool], take: &mut dyn FnMut(Rows<'_>)) -> Result<(), Failed> {

@@ -74,9 +74,10 @@ fn parameter(outcome: &Outcome, j: usize, own: &FitParameter) -> Value {
     };
     let others =
         (0..fit.values.len()).filter(|k| *k != j).map(|k| (name(outcome, k).to_owned(), number(fit.correlation(j, k))));
+    let sd = if fit.unseen.contains(&j) { f64::INFINITY } else { fit.sd(j) };
     json!({
         "name": own.sought.name, "path": path, "value": number(fit.values[j]), "unit": own.unit,
-        "sd": number(fit.sd(j)), "interval": outcome.intervals[j].map(number), "start": number(own.sought.start[0]),
+        "sd": number(sd), "interval": outcome.intervals[j].map(number), "start": number(own.sought.start[0]),
         "at_bound": side(fit.at_bound[j]), "correlation": others.collect::<Map<_, _>>(),
     })
 }

@@ -18,8 +18,8 @@ const STEPS_OF_A_PART: usize = 30;
 const STEPS: usize = 200;
 /// Points of a profile that is drawn.
 const POINTS: usize = 13;
-/// Starts of runs that are tried together.
-const BATCH: usize = 4;
+/// Starts of runs and strokes that are tried together.
+const BATCH: usize = 2;
 /// Costs that differ by less are one, as a share.
 const SAME: f64 = 1e-6;
 /// As of minima at a bound that a logarithm only drifts towards.
@@ -30,6 +30,10 @@ const EXACT: f64 = 1e-20;
 const ROUNDS: u64 = 4;
 /// Samples of a long stroke from which the search begins.
 const FEW: usize = 500;
+/// Starts of strokes that have come to one minimum, after which no more are tried.
+const AGREEING: usize = 3;
+/// Criteria of laws that differ by less are one.
+const ALIKE: f64 = 0.01;
 /// Lag-1 correlations that widen.
 const CORRELATED: f64 = 0.3;
 
@@ -72,8 +76,13 @@ pub fn fit(fitting: Fitting, jobs: usize, stop: &AtomicBool) -> Result<Outcome, 
             (law.clone(), fit.cost, fit.parameters + fit.eliminated, [fit.criteria.aicc, fit.criteria.bic])
         })
         .collect();
-    let least = found.into_iter().min_by(|(_, a), (_, b)| a.fit.criteria.bic.total_cmp(&b.fit.criteria.bic));
-    let Some((law, mut outcome)) = least else { return Err(FitError::Unstartable(failures.join("; "))) };
+    // A law that ends as another one, its further numbers at their bounds, is that one.
+    let bic = |(_, outcome): &(String, Outcome)| outcome.fit.criteria.bic;
+    let least = found.iter().map(bic).fold(f64::INFINITY, f64::min);
+    let alike = found.into_iter().filter(|one| bic(one) <= least + ALIKE);
+    let Some((law, mut outcome)) = alike.min_by_key(|(_, outcome)| outcome.fit.values.len()) else {
+        return Err(FitError::Unstartable(failures.join("; ")));
+    };
     outcome.laws = scores;
     outcome.chosen = Some(law);
     outcome.warnings.extend(failures);
@@ -137,14 +146,19 @@ fn led(problem: &Problem<'_>, settings: &Settings, k: usize, stop: &AtomicBool) 
     found.map_or_else(|| reach(problem, &Settings { steps: 0, ..*settings }, k, stop), Ok)
 }
 
-/// Where all starts lead. Of runs, which are dear, no more are tried once two of a batch and those before it have come to the least cost.
+/// Where all starts lead. Of runs, which are dear, no more are tried once two have come to the least cost; of strokes, once three have.
 fn reached(
     problem: &Problem<'_>,
     settings: &Settings,
     jobs: usize,
     stop: &AtomicBool,
 ) -> Result<Vec<Reached>, Refused> {
-    let batch = if problem.has_runs() { BATCH } else { settings.starts.max(1) };
+    let enough = match (problem.has_runs(), problem.takes_steps()) {
+        (true, _) => 2,
+        (false, true) => AGREEING,
+        _ => usize::MAX,
+    };
+    let batch = if problem.takes_steps() { BATCH } else { settings.starts.max(1) };
     let mut all: Vec<Reached> = Vec::new();
     while all.len() < settings.starts.max(1) {
         let first = all.len();
@@ -153,8 +167,8 @@ fn reached(
         let came = found.len();
         all.extend(found.into_iter().collect::<Result<Vec<_>, _>>()?);
         let least = all.iter().map(Reached::cost).fold(f64::INFINITY, f64::min);
-        let agreeing = all.iter().filter(|one| one.cost() <= least * (1.0 + SAME)).count();
-        if came < count || stop.load(Ordering::Relaxed) || problem.has_runs() && agreeing > 1 {
+        let agreeing = all.iter().filter(|one| one.cost() <= least * (1.0 + NEARLY)).count();
+        if came < count || stop.load(Ordering::Relaxed) || agreeing >= enough {
             break;
         }
     }
@@ -234,7 +248,8 @@ fn one(fitting: Fitting, jobs: usize, stop: &AtomicBool) -> Result<Outcome, FitE
         refuse_unseen(&problem)?;
         let settings = Settings { starts, seed, steps: STEPS };
         let found = found(&problem, &settings, jobs, stop).map_err(unfit)?;
-        if !found.unseen.is_empty() {
+        // Where another number came to its bound, what belongs to it may be out of sight.
+        if !found.unseen.is_empty() && found.at_bound.iter().all(Option::is_none) {
             return Err(no_data_see(&problem, &found.unseen));
         }
         let intervals = intervals(&problem, &found, (wanted, confidence, seed), jobs, stop);
@@ -367,6 +382,10 @@ fn warnings(problem: &Problem<'_>, fit: &Fit) -> Vec<String> {
              does not describe the rows to their noise",
             fit.widening
         ));
+    }
+    for at in &fit.unseen {
+        let name = &problem.parameters[*at].name;
+        all.push(format!("no data depend on {name} where the fit has ended: its value says nothing"));
     }
     let [tried, reached] = fit.starts;
     if tried >= 4 && reached * 4 < tried {

@@ -15,6 +15,8 @@ use std::sync::Arc;
 
 /// Relative tolerance of D^alpha along the stroke.
 const RTOL: f64 = 1e-8;
+/// The same where a part of the samples shows where to begin.
+const ROUGH_RTOL: f64 = 1e-6;
 /// Samples are equally far apart where their distances differ by less, as a share.
 const EVEN: f64 = 0.02;
 /// Rates of an unknown past, from this over the record to this over the distance of samples.
@@ -31,6 +33,8 @@ pub(super) struct Stroke {
     signal: Signal,
     /// From the first sample on, s.
     times: Vec<f64>,
+    /// Relative tolerances of D^alpha, and of its memory.
+    rtol: [f64; 2],
     /// The force where it was filtered.
     pub(super) force: Option<Vec<f64>>,
     /// Rows before this time of the record are not used, s.
@@ -91,7 +95,8 @@ impl Stroke {
         builder.push(body).map_err(|error| error.to_string())?;
         let model = builder.finish().map_err(|error| error.to_string())?;
         let joint = Joint::new(&model, 0).map_err(|error| error.to_string())?;
-        Ok(Self { model: model.into(), joint, signal, times, force, unused, rates })
+        let rtol = if step > 1 { [ROUGH_RTOL, 0.1 * ROUGH_RTOL] } else { [RTOL, 0.01 * RTOL] };
+        Ok(Self { model: model.into(), joint, signal, rtol, times, force, unused, rates })
     }
 
     /// A slider that follows the stroke with the element on it, and which parameter of the record each of its own is.
@@ -150,8 +155,11 @@ impl Stroke {
             sensitivity,
         };
         let end = self.times[self.times.len() - 1];
-        let settings =
-            Settings { rtol: RTOL, memory_rtol: 1e-10, ..Settings::new(end, RowTimes::Times(vec![end].into())) };
+        let settings = Settings {
+            rtol: self.rtol[0],
+            memory_rtol: self.rtol[1],
+            ..Settings::new(end, RowTimes::Times(vec![end].into()))
+        };
         Ok((system, settings, by))
     }
 }

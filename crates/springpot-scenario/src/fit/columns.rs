@@ -189,7 +189,11 @@ impl Numbers {
         let list =
             || taken.iter().map(|(unit, _)| if unit.is_empty() { "pure numbers" } else { unit }).collect::<Vec<_>>();
         let refuse = |why: String| -> Refused {
-            let help = format!("write a unit of the dimension of {}", names::either(list()));
+            let mut help = format!("write a unit of the dimension of {}", names::either(list()));
+            let has = |unit: &str| taken.iter().any(|(si, _)| *si == unit);
+            if has("N/m") && !has("Pa") || has("m/N") && !has("1/Pa") {
+                help.push_str("; moduli take `area` and `length` of the sample");
+            }
             field.refuse(RefusalKind::BadQuantity, why, Some(help))
         };
         let unit = Unit::parse(&text, &none).map_err(|error| refuse(format!("has the unit {text:?}: {error}")))?;

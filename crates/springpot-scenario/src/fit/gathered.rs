@@ -241,6 +241,18 @@ fn one(ctx: &Context<'_>, root: &Table<'_>, k: usize, global: &[By]) -> Read<(Ga
             return Err(Refused);
         }
     };
+    for (by, (plan, range)) in asked.by.iter().zip(gathered.seen.iter().zip(&gathered.bounds)) {
+        let Some(([low, high], [least, most])) = plan.as_ref().and_then(|plan| plan.bounds).zip(*range) else {
+            continue;
+        };
+        if low < least || high > most {
+            let block = by.block.and_then(|k| root.node.get("parameter")?.items()?.get(k)?.get("bounds"));
+            let place = block.map_or(&by.place, |bounds| &bounds.place);
+            let message =
+                format!("`bounds` of parameter {:?} are {low} … {high}, and its place takes {least} … {most}", by.name);
+            return Err(ctx.refuse(place.refuse(RefusalKind::OutOfRange, message).help("write bounds within that")));
+        }
+    }
     gathered.case.document = document;
     let places = |all: Vec<(usize, crate::Place)>| all.into_iter().map(|(at, _)| at).collect();
     Ok((gathered, (places(offsets), places(delays))))
@@ -465,6 +477,11 @@ fn finished(
         let message = format!("{:?} starts at {:?}, outside {low} … {high}", faulty.sought.name, faulty.sought.start);
         let refusal = faulty.place.refuse(RefusalKind::OutOfRange, message);
         return Err(root.ctx.refuse(refusal.help("write bounds that hold where it starts, or `start`")));
+    }
+    if let Some((faulty, fault)) = found.iter().find_map(|one| Some((one, one.sought.fault()?))) {
+        let refusal =
+            faulty.place.refuse(RefusalKind::Rule, format!("the parameter {:?}: {fault}", faulty.sought.name));
+        return Err(root.ctx.refuse(refusal.help("write `bounds`, or another `scale`")));
     }
     let fitted = |data: &&DataPlan| data.is_fitted;
     let rows: usize = data.iter().filter(fitted).map(|data| data.rows() * data.columns.len()).sum();

@@ -4,7 +4,7 @@ use super::Fitting;
 use super::plan::{DataKind, DataPlan};
 use crate::text::document::{Entry, Node, Value};
 use crate::text::refusal::Refusals;
-use springpot::law::{Catalog, Param};
+use springpot::law::{Catalog, NetworkText, Param};
 use std::sync::Arc;
 
 /// About how stiff an element is, N/m, and at which rate, rad/s.
@@ -15,7 +15,7 @@ pub(super) struct Size {
 }
 
 impl Fitting {
-    /// The same measurements with another law of the element of `[fit]`, all parameters of which are sought under their own names.
+    /// The same measurements with another law of the element of `[fit]`, by its name or as a network, all parameters of which are sought under their own names.
     ///
     /// # Errors
     /// The refusals of a scenario with that law.
@@ -63,7 +63,12 @@ fn size(data: &DataPlan) -> Option<Size> {
 
 /// Gives the element another law, with parameters of about that size; those of the same name stay.
 pub(super) fn replace(catalog: &Catalog, document: &mut Node, element: &str, (law, size): (&str, Size)) {
-    let Some(entry) = catalog.get(law) else { return };
+    let written = || NetworkText::parse(law).ok().map(|network| Arc::new(network.entry()));
+    let Some((entry, key)) =
+        catalog.get(law).cloned().map(|entry| (entry, "law")).or_else(|| Some((written()?, "network")))
+    else {
+        return;
+    };
     let Value::Table(sections) = &mut document.value else { return };
     let Some(elements) = sections.iter_mut().find(|section| section.key == "element") else { return };
     let Value::Array(items) = &mut Arc::make_mut(&mut elements.node).value else { return };
@@ -97,7 +102,7 @@ pub(super) fn replace(catalog: &Catalog, document: &mut Node, element: &str, (la
     };
     let parameters = Value::Table(entry.params.iter().map(one).collect());
     let parameters = made("parameters", parameters);
-    let law = made("law", Value::Text(law.to_owned()));
+    let law = made(key, Value::Text(law.to_owned()));
     let Value::Table(entries) = &mut node.value else { return };
     entries.retain(|entry| !["law", "network", "parameters"].contains(&entry.key.as_str()));
     entries.extend([law, parameters]);

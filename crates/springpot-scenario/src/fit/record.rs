@@ -393,7 +393,8 @@ impl<'a> Record<'a> {
             return Ok(());
         }
         let positive = plan.columns.iter().map(|column| (column.name.as_str(), &column.measured));
-        for (name, numbers) in positive.chain([("the abscissa", &plan.at)]) {
+        let abscissa = if matches!(plan.kind, DataKind::Dma { .. }) { "frequency" } else { "t" };
+        for (name, numbers) in positive.chain([(abscissa, &plan.at)]) {
             if let Some(row) = numbers.iter().position(|x| *x <= 0.0) {
                 let message =
                     format!("has {} in {name} on line {}, which must be positive", numbers[row], plan.lines[row]);

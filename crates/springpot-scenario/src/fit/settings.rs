@@ -6,6 +6,7 @@ use crate::reader::{Read, Table, all};
 use crate::text::document::shorten;
 use crate::text::names;
 use crate::text::refusal::RefusalKind;
+use springpot::law::{NetworkText, NetworkTextError};
 
 /// Reads `[fit]`; what it leaves out has its default.
 pub(super) fn read(root: &Table<'_>) -> Read<FitSettings> {
@@ -35,7 +36,7 @@ pub(super) fn read(root: &Table<'_>) -> Read<FitSettings> {
         })?;
     }
     if let Some(field) = table.get("laws") {
-        let items = field.items("an array of names of laws")?;
+        let items = field.items("an array of names of laws and of networks")?;
         settings.laws = all(items.iter().map(|item| {
             let text = item.text()?;
             match item.ctx.catalog.get(text) {
@@ -44,6 +45,25 @@ pub(super) fn read(root: &Table<'_>) -> Read<FitSettings> {
                     Err(item.refuse(RefusalKind::Rule, message, Some("write a law of single numbers".to_owned())))
                 }
                 Some(_) => Ok(text.to_owned()),
+                None if text.contains('(') => match NetworkText::parse(text) {
+                    Ok(network) if network.files().next().is_none() && !network.clone().entry().has_lists() => {
+                        Ok(text.to_owned())
+                    }
+                    Ok(_) => {
+                        let message = format!("holds {:?}, which has a table or a list", shorten(text));
+                        Err(item.refuse(
+                            RefusalKind::Rule,
+                            message,
+                            Some("write a network of single numbers".to_owned()),
+                        ))
+                    }
+                    Err(NetworkTextError { message, span, help, unknown }) => {
+                        let refusal = item.node.place_in_text(Some(span));
+                        let refusal = refusal.refuse(RefusalKind::BadName, format!("`laws` of [fit]: {message}"));
+                        let help = unknown.map_or(help, |(name, known)| names::suggest(&name, known));
+                        Err(item.ctx.refuse(refusal.help(help)))
+                    }
+                },
                 None => {
                     let laws = item.ctx.catalog.entries().iter().map(|entry| &*entry.name);
                     let message = format!("names {:?}, which is no law", shorten(text));

@@ -237,10 +237,19 @@ fn judged(table: &Table<'_>, exponents: &dyn Fn(&str) -> Option<f64>, plan: &mut
     if let Some([low, high]) = plan.bounds {
         let starts = starts.as_deref().unwrap_or(std::slice::from_ref(&value));
         if let Some(outside) = starts.iter().find(|start| !(low..=high).contains(*start)) {
-            let field = table.get("start").map_or_else(|| table.require("bounds"), Ok)?;
-            let message = format!("and its bounds do not go together: {outside} is outside {low} … {high}");
-            let help = "write bounds that hold where it starts".to_owned();
-            return Err(field.refuse(RefusalKind::Rule, message, Some(help)));
+            let (field, message, help) = match table.get("start") {
+                Some(field) => (
+                    field,
+                    format!("holds {outside}, outside its bounds {low} … {high}"),
+                    "write starts within the bounds, or wider bounds",
+                ),
+                None => (
+                    table.require("bounds")?,
+                    format!("is {low} … {high}, and the file begins outside, at {outside}"),
+                    "write bounds that hold the value of the file, or `start`",
+                ),
+            };
+            return Err(field.refuse(RefusalKind::Rule, message, Some(help.to_owned())));
         }
     }
     plan.starts = starts.unwrap_or_default();

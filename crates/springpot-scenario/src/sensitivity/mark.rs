@@ -64,7 +64,7 @@ fn one(ctx: &Context<'_>, document: &mut Node, target: &Target, tag: usize) -> R
             });
             return refuse("it is an expression", Some(help));
         }
-        Value::Text(_) => return refuse(&format!("it is the text {}", node.written()), None),
+        Value::Text(_) => return refuse(&format!("it is the text {}", node.written()), Some(of_a_number())),
         Value::Table(_) if node.get("expression").is_some() => {
             let text = node.get("expression").and_then(|text| text.text()).unwrap_or_default();
             let help = follows(document, text);
@@ -126,25 +126,29 @@ fn follows(document: &Node, text: &str) -> Option<String> {
     (!found.is_empty()).then(|| format!("it follows from {}: differentiate by that", found.join(" and ")))
 }
 
+/// What to take in place of what is no number.
+fn of_a_number() -> String {
+    "take a number of the equations, such as element.NAME.PARAMETER".to_owned()
+}
+
 /// Why no number that the equations know stands at a path.
 fn why_not(document: &Node, target: &Target) -> (String, Option<String>) {
     let (section, last) = target.ends();
     let node = path::get(document, target);
-    let of_a_constant = "differentiate by a number of the equations, such as element.NAME.PARAMETER".to_owned();
     let is_of_file = document.get("robot").is_some_and(|robot| robot.get("urdf").is_some());
     match (section, last) {
         ("robot", _) if is_of_file && node.is_none() => (
             "numbers in a URDF file have no path".to_owned(),
             Some("write the robot as [[robot.body]] blocks".to_owned()),
         ),
-        ("time", _) => ("rows say when the run is looked at, not what it does".to_owned(), Some(of_a_constant)),
-        ("solver", _) => ("it says how exactly is computed, not what".to_owned(), Some(of_a_constant)),
+        ("time", _) => ("rows say when the run is looked at, not what it does".to_owned(), Some(of_a_number())),
+        ("solver", _) => ("it says how exactly is computed, not what".to_owned(), Some(of_a_number())),
         (_, "sample" | "delay" | "period") => (format!("no derivative is known of a `{last}`"), None),
         _ => match node.map(|node| &node.value) {
             Some(Value::Text(text)) if units::split_quantity(text).is_none() => {
-                (format!("it is the text {:?}", shorten(text)), None)
+                (format!("it is the text {:?}", shorten(text)), Some(of_a_number()))
             }
-            Some(Value::Boolean(_)) => ("it is a switch and no number".to_owned(), None),
+            Some(Value::Boolean(_)) => ("it is a switch and no number".to_owned(), Some(of_a_number())),
             Some(Value::Array(items)) if items.iter().all(|item| item.entries().is_none()) => {
                 let help = format!("go on to one of its numbers, as in {}.0", target.written);
                 ("it is an array and no number".to_owned(), Some(help))

@@ -127,8 +127,8 @@ impl Parameter {
         }
     }
 
-    /// Whether it can be sought at all: what is wrong, else.
-    pub(super) fn fault(&self) -> Option<&'static str> {
+    /// What keeps it from being sought, if anything does.
+    pub fn fault(&self) -> Option<&'static str> {
         let [low, high] = self.bounds;
         let admissible = |value: &f64| value.is_finite() && (low..=high).contains(value);
         match self.scale {

@@ -1,0 +1,4 @@
+//! Fits to records whose truth is known.
+
+mod moduli;
+mod support;
