@@ -66,7 +66,12 @@ fn read(text: &str, folder: &Path) -> Result<Fitting, String> {
 fn what_is_wrong_is_refused_where_it_stands() {
     let folder = tempfile::tempdir().unwrap();
     let cases: [(&str, &str, &str, &str); 38] = [
-        (PAD, "element.pad.alpha\"", "element.pad.law\"", "a.toml:7:8: element.pad.law cannot be a parameter: it is the text"),
+        (
+            PAD,
+            "element.pad.alpha\"",
+            "element.pad.law\"",
+            "a.toml:7:8: element.pad.law cannot be a parameter: it is the text",
+        ),
         (
             PAD,
             "element.pad.alpha\"",
@@ -87,7 +92,12 @@ fn what_is_wrong_is_refused_where_it_stands() {
         ),
         (PAD, "dma.csv", "zero.csv", "a.toml:12:7: `csv` of data \"dma\" has 0 in frequency on line 2"),
         (PAD, "dma.csv", "units.csv", "a.toml:13:40: `storage` of `columns` of data \"dma\" has the unit \"MPa\""),
-        (PAD, "[[data]]", "[fit]\nlaws = [\"series(spring(k), springpot(c))\"]\n[[data]]", "a.toml:9:28: `laws` of [fit]: `springpot` takes 2 names, not 1"),
+        (
+            PAD,
+            "[[data]]",
+            "[fit]\nlaws = [\"series(spring(k), springpot(c))\"]\n[[data]]",
+            "a.toml:9:28: `laws` of [fit]: `springpot` takes 2 names, not 1",
+        ),
         (PAD, "[[data]]", "[[dat]]", "a.toml:8:3: unknown key `dat`"),
         (PAD, "kind = \"dma\"", "kind = \"dmc\"", "a.toml:10:8: `kind` of data \"dma\" is \"dmc\""),
         (PAD, "element = \"pad\"\n", "", "a.toml:8:1: data \"dma\" has no `element`"),

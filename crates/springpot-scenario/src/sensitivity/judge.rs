@@ -17,7 +17,7 @@ use crate::text::glob::matches;
 use crate::text::names;
 use crate::text::refusal::{Place, RefusalKind};
 use springpot::identification::{Prior, Scale};
-use springpot::observe::{Observables, Quantity};
+use springpot::observe::Quantity;
 use springpot::sensitivity::{DerivativeColumn, Parameter, Sensitivity, has_derivative};
 use springpot::table::Column;
 use std::collections::HashMap;
@@ -96,7 +96,7 @@ fn of_metrics(root: &Table<'_>, plan: &Plan, place: &Place) -> Read<OfMetrics> {
         let help = "add a [[metric]], or write method = \"forward\"".to_owned();
         return Err(root.ctx.refuse(place.refuse(RefusalKind::Missing, message).help(help)));
     }
-    let [acting, described] = [plan.acting_observables(), plan.observables()].each_ref().map(by_name);
+    let [acting, described] = by_name(plan);
     let mut of = OfMetrics::default();
     for metric in plan.metrics.iter().map(|plan| &plan.metric) {
         if !described.get(&metric.of).copied().is_some_and(has_derivative) {
@@ -115,10 +115,14 @@ fn of_metrics(root: &Table<'_>, plan: &Plan, place: &Place) -> Read<OfMetrics> {
     Ok(of)
 }
 
-/// What can be observed, by the names of columns.
-fn by_name(observables: &Observables) -> HashMap<String, Quantity> {
-    let quantities = observables.quantities().into_iter();
-    quantities.map(|quantity| (observables.named(quantity).to_string(), quantity)).collect()
+/// What can be observed of the system, and of all elements, by the names of columns.
+fn by_name(plan: &Plan) -> [HashMap<String, Quantity>; 2] {
+    [plan.acting_observables(), plan.observables()].map(|observables| {
+        let tells_losses = plan.output.tells_joint_losses;
+        let observables = if tells_losses { observables.with_joint_losses() } else { observables };
+        let quantities = observables.quantities().into_iter();
+        quantities.map(|quantity| (observables.named(quantity).to_string(), quantity)).collect()
+    })
 }
 
 /// What a parameter moves.
@@ -306,7 +310,7 @@ fn columns(root: &Table<'_>, plan: &Plan, asked: &Asked, parameters: &[Parameter
     };
     let all = plan.columns();
     let written = read_columns(root)?;
-    let [acting, described] = [plan.acting_observables(), plan.observables()].map(by_name);
+    let [acting, described] = by_name(plan);
     let globs = asked.of.as_deref().or(written.as_deref());
     for glob in asked.of.iter().flatten() {
         if !all.iter().any(|column| matches(&glob.text, &column.name)) {
