@@ -13,8 +13,10 @@ from conftest import PACKAGE
 
 EXAMPLES = PACKAGE / "examples"
 NOTEBOOKS = [
+    "a_strut_by_design",
     "controller_in_python",
     "half_derivative_of_my_data",
+    "mr_damper_from_its_record",
     "papers_in_ten_cells",
     "ur5_mount_from_its_record",
     "ur5_rubber_mount",
