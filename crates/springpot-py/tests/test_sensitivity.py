@@ -65,7 +65,7 @@ def test_columns_by_parameters() -> None:
     with pytest.raises(KeyError, match="no metric"):
         run.gradient("shallow")
     with pytest.raises(KeyError, match="does not tell"):
-        run.sensitivity("energy.actuators")
+        run.sensitivity("energy.residual")
     with pytest.raises(ValueError, match="not differentiated"):
         sp.run(ARM).sensitivity("q.q1")
     both = sp.run(ARM, sweep={"element.strut.k": [50, 60]}, sensitivity=BY)

@@ -147,7 +147,7 @@ fn what_cannot_be_designed_is_refused() {
         ("[design]\nminimise = \"ring\"\nconstraints = [{ metric = \"effort\", max = \"4 m\" }]\n", "max"),
         ("[design]\nminimise = \"ring\"\n[[parameter]]\npath = \"element.pad.k\"\n", "has no bounds"),
         (
-            "[[metric]]\nname = \"work\"\nof = \"energy.actuators\"\nkind = \"final\"\n[design]\nminimise = \"work\"\n",
+            "[[metric]]\nname = \"work\"\nof = \"energy.residual\"\nkind = \"final\"\n[design]\nminimise = \"work\"\n",
             "no gradient is known",
         ),
     ] {

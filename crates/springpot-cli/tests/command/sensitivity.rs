@@ -193,7 +193,7 @@ kind = "residual-vibration"
 band = 0.2
 [[metric]]
 name = "work"
-of = "energy.actuators"
+of = "energy.residual"
 kind = "final"
 "#;
 

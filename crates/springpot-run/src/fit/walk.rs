@@ -22,6 +22,9 @@ pub(super) struct Ask {
 /// Points of a rate, and how far apart they are, as a share of the step.
 const POINTS: usize = 5;
 const APART: f64 = 1.0 / 16.0;
+/// Most steps of a trial, and how many more for each row: one far off may have no end.
+const STEPS: [usize; 2] = [200_000, 1_000];
+
 /// The beginning of a step is looked at so far behind it, as a share.
 const BEHIND: f64 = 1e-9;
 
@@ -36,7 +39,8 @@ pub(super) fn walk(
     into: &mut Predicted,
 ) -> Result<(), Failed> {
     let failed = |error: springpot::system::RunError| Failed(error.to_string());
-    let end = settings.end;
+    let (end, most) = (settings.end, STEPS[0] + STEPS[1] * asks.len());
+    let mut left = most;
     let mut run = Simulation::new(system, settings).map_err(failed)?;
     asks.sort_by(|a, b| a.t.total_cmp(&b.t));
     let mut snapshot: Option<(f64, Snapshot)> = None;
@@ -44,6 +48,10 @@ pub(super) fn walk(
         let is_inside = (0.0..=end).contains(&t);
         let t = t.clamp(0.0, end);
         while run.t() < t {
+            if left == 0 {
+                return Err(Failed(format!("the run takes more than {most} steps until t = {} s", run.t())));
+            }
+            left -= 1;
             if !run.step().map_err(failed)? && run.t() < t {
                 return Err(Failed(format!("the run ends at t = {} s", run.t())));
             }
