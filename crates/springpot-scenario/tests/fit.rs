@@ -164,7 +164,12 @@ fn what_is_wrong_is_refused_where_it_stands() {
             "a.toml:8:1: a fit has no sweeps",
         ),
         (SLIDER, "\"q.x\" = \"x\"", "\"q.y\" = \"x\"", "a.toml:21:21: `columns` of data \"data-1\" names \"q.y\""),
-        (SLIDER, "\"q.x\" = \"x\"", "\"pad.dissipated\" = \"x\"", "a.toml:21:32: \"pad.dissipated\" cannot be fitted"),
+        (
+            SLIDER,
+            "\"q.x\" = \"x\"",
+            "\"energy.residual\" = \"x\"",
+            "a.toml:21:33: \"energy.residual\" cannot be fitted",
+        ),
         (
             SLIDER,
             "x.csv",

@@ -222,7 +222,7 @@ fn a_key_that_does_not_exist_is_refused_wherever_it_stands() {
             let mut keys = place.rsplit('/');
             let last = keys.next().unwrap_or_default();
             let of_controllers = ["kp", "kd", "ki", "lambda", "mu", "limits", "rate_limits", "to"];
-            ["constants", "joints", "torque", "prescribed", "guess", "units", "where"].contains(&last)
+            ["constants", "joints", "torque", "prescribed", "guess", "units", "where", "set"].contains(&last)
                 || place.contains("/controller/") && of_controllers.contains(&last)
                 || ["q", "v"].contains(&last) && keys.next() == Some("start")
                 || place.strip_suffix("/parameters").is_some_and(|element| {

@@ -309,7 +309,10 @@ fn what_cannot_be_a_parameter_is_refused_by_its_path() {
         ("[sensitivity]\nby = \"element.tendon.k\"\nhow = 1", "unknown key `how`"),
         ("[[parameter]]\nname = \"k\"", "has no `path`"),
         ("[[parameter]]\npath = \"element.tendon.k\"\nbounds = [60, 50]", "goes from 60 to 50"),
-        ("[[parameter]]\npath = \"element.tendon.k\"\nbounds = [50, 60]", "40 is outside 50 … 60"),
+        (
+            "[[parameter]]\npath = \"element.tendon.k\"\nbounds = [50, 60]",
+            "is 50 … 60, and the file begins outside, at 40",
+        ),
         ("[[parameter]]\npath = \"element.tendon.k\"\nbounds = [\"1 N\", \"2 N\"]", "this place takes `N/m`"),
         ("[[parameter]]\npath = \"element.tendon.k\"\nscale = \"square\"", "no scale"),
         ("[[parameter]]\npath = \"element.tendon.k\"\nprior = { mean = 40, sd = 0 }", "must be positive"),
