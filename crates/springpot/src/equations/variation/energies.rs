@@ -15,6 +15,9 @@ use serde::{Deserialize, Serialize};
 /// What is stored at most in an end that is just hit, in units of what it would take in the time so far.
 const NOTHING: f64 = 1e-13;
 
+/// Change of a power between two steps, in units of it, that is none.
+const GOES_ON: f64 = 1e-4;
+
 /// What parameters change of works.
 #[derive(Debug)]
 pub(super) struct Works {
@@ -39,6 +42,8 @@ pub(crate) struct WorksDone {
     origin: Vec<f64>,
     /// What was crossed before the step at hand.
     crossed: Option<Crossed>,
+    /// What every element dissipated at the end of the last step, W.
+    last: Vec<f64>,
 }
 
 /// A change that comes later by so much, s, and what every element dissipated and was supplied with before, W; of one whose force jumps by how much less
@@ -70,7 +75,7 @@ impl Works {
         Self {
             // Who names no columns asks for any of them.
             is_kept: !has_fixed_steps && (by.columns.is_empty() || by.columns.iter().any(|column| asks(column.of))),
-            done: WorksDone { elements: each(), joints: blocks(), origin: blocks(), crossed: None },
+            done: WorksDone { elements: each(), joints: blocks(), origin: blocks(), crossed: None, last: Vec::new() },
             flows: None,
             row: (each(), blocks()),
         }
@@ -158,7 +163,20 @@ impl Variation {
             return;
         }
         let count = self.count();
-        if let Some(Crossed { later, before }) = self.works.done.crossed.take() {
+        let crossed = self.works.done.crossed.take();
+        for (e, last) in std::mem::take(&mut self.works.done.last).into_iter().enumerate() {
+            let (law, now) = (&self.system.elements[e].law, equations.bank.powers(e)[0].dissipation);
+            // What begins to slip dissipates at once, from a time that nobody tells.
+            if crossed.is_none()
+                && (now - last).abs() > GOES_ON * last.abs().max(now.abs())
+                && law.has_guards(&equations.bank.point(e, 0))
+            {
+                let [dissipated, supplied] = &mut self.works.done.elements[e];
+                dissipated.fill(f64::NAN);
+                supplied.fill(f64::NAN);
+            }
+        }
+        if let Some(Crossed { later, before }) = crossed {
             // Δ∫P dt = (P⁻ − P⁺)·δt*.
             let works = self.works.done.elements.iter_mut().zip(before).enumerate();
             for (e, ([dissipated, supplied], ([dissipation, input], less))) in works {
@@ -218,6 +236,7 @@ impl Variation {
             Flows::until(flows, count, whole, done);
         }
         Flows::until(&joints, count, whole, &mut done.joints);
+        done.last = (0..self.elements.len()).map(|e| equations.bank.powers(e)[STAGES].dissipation).collect();
     }
 
     /// Works out what has changed of the works until a row, at θ of the step at hand or between two.
