@@ -185,6 +185,8 @@ impl Variation {
                     let [kinetic, potential] = self.mechanical(ROW);
                     if of == EnergyQuantity::Kinetic { kinetic } else { potential }
                 }
+                // Where none has done any, none does under other values.
+                EnergyQuantity::Actuators if snapshot.actuators == 0.0 => vec![0.0; count],
                 EnergyQuantity::Actuators => return self.work_of_actuators(),
                 EnergyQuantity::Joints => return self.lost_in_joints(),
                 EnergyQuantity::Residual => return None,
