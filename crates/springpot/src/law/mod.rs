@@ -44,7 +44,6 @@ mod named;
 mod piezo;
 mod piezo_stack;
 mod prandtl_ishlinskii;
-pub(crate) mod probe;
 mod rule;
 mod standard;
 mod thermoviscoelastic;

@@ -10,7 +10,7 @@ use crate::collocation::radau::{A, A_SQUARED};
 use crate::collocation::{RADAU_NODES, STAGES, TABLEAU, integrals};
 use crate::equations::solve::Solve;
 use crate::fractional::{MemoryAdjoint, PastOfStep};
-use crate::law::probe::{RATE, STROKE};
+use crate::law::variation::probe::{RATE, STROKE};
 
 /// Columns of a row of a law.
 const AT_ROW: [usize; 2] = [STROKE[STAGES + 1], RATE[STAGES + 1]];

@@ -5,7 +5,7 @@ use super::{Recording, Tape};
 use crate::equations::assembly::Equations;
 use crate::equations::node::Node;
 use crate::equations::variation::{ROW, Variation};
-use crate::law::probe::LawProbe;
+use crate::law::variation::probe::LawProbe;
 use crate::law::{Derivative, Network};
 use crate::observe::{ElementQuantity, EnergyQuantity, Quantity};
 use crate::sensitivity::{Parameter, Seed, Sensitivity, SensitivityError, has_derivative};

@@ -9,7 +9,7 @@ mod record;
 mod tape;
 
 use super::Variation;
-use crate::law::probe::LawProbe;
+use crate::law::variation::probe::LawProbe;
 use crate::observe::Quantity;
 use tape::{Begin, Entries, Layout, Row, Step};
 

@@ -24,7 +24,7 @@ impl Recording {
     /// Keeps what the step that was seen, of size `h` and with this matrix, transposed, does; until it is taken into the past it may be another one.
     pub(crate) fn keep_step(&mut self, equations: &Equations, (h, free): (f64, &[usize]), matrix: Vec<f64>) {
         let stages = std::array::from_fn(|i| slopes(&self.variation, i + 1, free));
-        let element = |(e, law): (usize, &mut crate::law::probe::LawProbe)| {
+        let element = |(e, law): (usize, &mut crate::law::variation::probe::LawProbe)| {
             let response = equations.bank.response(e);
             let columns = law.columns();
             let mut forces = Sparse::default();

@@ -4,12 +4,12 @@
 //! row, by its inner variables, by what the past of each memory tells ([`PortColumns`]), and by the parameters that move its numbers or inputs. The
 //! columns are few and the same in every step.
 
-use super::network::Network;
-use super::state::State;
-use super::step::Point;
-use super::variation::{LawVariation, ObservationVariation, PointVariation, StepVariation};
+use super::{LawVariation, ObservationVariation, PointVariation, StepVariation};
 use crate::collocation::STAGES;
 use crate::fractional::PortColumns;
+use crate::law::network::Network;
+use crate::law::state::State;
+use crate::law::step::Point;
 
 /// Points that a law is told of: the start, the nodes and a row.
 const POINTS: usize = STAGES + 2;
