@@ -36,6 +36,7 @@ use one_node::OneSize;
 pub(crate) use one_node::{STAGE, Told};
 use saltation::Saltation;
 use singular::Singular;
+use sizes::Sizes;
 pub(crate) use sizes::{StepErrors, TANGENTS};
 pub(crate) use state::VariationState;
 use std::ops::Range;
@@ -46,30 +47,20 @@ use std::sync::Arc;
 pub(crate) struct Variation {
     pub(super) by: Arc<Sensitivity>,
     pub(super) system: Arc<System>,
-    /// Of every coordinate and velocity of the run, which of the extended robot it is.
-    own_q: Vec<usize>,
+    coordinates: Coordinates,
+    /// Of every velocity of the run, which of the extended robot it is.
     pub(super) own_v: Vec<usize>,
     /// Whether each velocity of the extended robot is one of the run; the others stand for places and stay 0.
     moves: Vec<bool>,
-    /// Coordinates of the extended robot.
-    q: Vec<f64>,
     pub(crate) elements: Vec<ElementVariation>,
     /// What moves geometry, for good: velocity of the extended robot, parameter, by how much.
     placed: Vec<(usize, usize, f64)>,
     inertias: Inertias,
     /// At the start of the step, at its nodes, and at a row.
     pub(crate) nodes: [NodeVariation; ROW + 1],
-    /// How large q and v have changed so far, in the blocks of the nodes.
-    sizes: [Vec<f64>; 2],
-    /// How large the inner variables of every element have.
-    hidden: Vec<Vec<f64>>,
-    /// [`Self::expected`].
-    expected: Vec<f64>,
+    sizes: Sizes,
     singular: Singular,
-    workspace: Workspace,
-    pub(crate) solve: Solve,
-    /// Right-hand sides of a step, side by side.
-    pub(crate) right: Vec<f64>,
+    pub(crate) room: Room,
     /// Of a change that is about to be crossed, and of those before.
     saltation: Saltation,
     works: Works,
@@ -77,6 +68,23 @@ pub(crate) struct Variation {
     control: Option<Box<ControlVariation>>,
     /// What is known of steps of one size, where it takes such.
     one_size: Option<OneSize>,
+}
+
+/// Coordinates of the extended robot.
+#[derive(Debug)]
+struct Coordinates {
+    /// Of every coordinate of the run, which of them it is.
+    own: Vec<usize>,
+    values: Vec<f64>,
+}
+
+/// Room to work in, kept from step to step.
+#[derive(Debug)]
+pub(crate) struct Room {
+    workspace: Workspace,
+    pub(crate) solve: Solve,
+    /// Right-hand sides of a step, side by side.
+    pub(crate) right: Vec<f64>,
 }
 
 /// Change of the forces, in units of the largest, at which they are found.
@@ -211,21 +219,16 @@ impl Variation {
         let elements = extended.elements.iter().map(|element| element.inputs.len()).enumerate().map(element).collect();
         let moves = (0..model.nv()).map(|k| own_v.contains(&k)).collect();
         Ok(Self {
-            own_q,
+            coordinates: Coordinates { own: own_q, values: start.clone() },
             own_v,
             moves,
-            q: start.clone(),
             elements,
             placed,
             inertias: Inertias::of(by),
             nodes: std::array::from_fn(|_| node()),
-            sizes: [zeros(), zeros()],
-            hidden: vec![Vec::new(); extended.elements.len()],
-            expected: Self::expected(by.parameters.iter().map(|parameter| parameter.typical)),
+            sizes: Sizes::new(by, model.nv(), extended.elements.len()),
             singular: Singular::new(extended.elements.len(), model.nv(), count),
-            workspace: Workspace::new(model),
-            solve: Solve::default(),
-            right: Vec::new(),
+            room: Room { workspace: Workspace::new(model), solve: Solve::default(), right: Vec::new() },
             saltation: Saltation::new(count),
             works: Works::new(by, extended.elements.len(), has_fixed_steps),
             by: by.clone(),
@@ -344,7 +347,7 @@ impl Variation {
         if free.is_empty() {
             return;
         }
-        let mut solve = std::mem::take(&mut self.solve);
+        let mut solve = std::mem::take(&mut self.room.solve);
         if solve.factor_part(&node.slopes.d_a, n, &free) {
             let (mut spare, mut told) = ([vec![0.0; count], vec![0.0; count]], Vec::new());
             for (e, ElementVariation { law, stroke, rate, inputs, row: [force, ..], .. }) in
@@ -369,14 +372,14 @@ impl Variation {
         } else {
             node.a.fill(f64::NAN);
         }
-        self.solve = solve;
+        self.room.solve = solve;
     }
 
     /// Looks at node `i` of the step, where the run is at `at`: what its elements measure, and their inputs.
     pub(crate) fn look(&mut self, i: usize, at: Node) {
-        let Self { system, own_q, own_v, moves, q, nodes, workspace, .. } = self;
+        let Self { system, coordinates: Coordinates { own, values: q }, own_v, moves, nodes, room, .. } = self;
         let (model, node) = (&system.model, &mut nodes[i]);
-        own_q.iter().zip(at.q).for_each(|(&k, value)| q[k] = *value);
+        own.iter().zip(at.q).for_each(|(&k, value)| q[k] = *value);
         for (&k, (v, a)) in own_v.iter().zip(at.v.iter().zip(at.a)) {
             (node.v_now[k], node.a_now[k]) = (*v, *a);
         }
@@ -389,7 +392,7 @@ impl Variation {
             let mut reading = Reading::default();
             element.measure.read_into(model, &node.kinematics, gradient, &mut reading);
             *told = [reading.coordinate, reading.rate];
-            element.measure.hessian_of_moving(model, &node.kinematics, moves, workspace, kept);
+            element.measure.hessian_of_moving(model, &node.kinematics, moves, &mut room.workspace, kept);
             // y'_b = Σ_a ∂(∂y/∂q_a)/∂q_b v_a.
             bend.fill(0.0);
             for &k in own_v.iter() {
@@ -444,7 +447,8 @@ impl Variation {
     /// Looks at node `i`, where the elements pull with `force`, and sees the slopes there, and what changes where the motion stays.
     pub(crate) fn see(&mut self, equations: &Equations, i: usize, at: Node, force: &[f64]) {
         self.look(i, at);
-        let Self { by, system, own_v, moves, nodes, workspace, saltation, inertias, one_size, .. } = self;
+        let Self { by, system, own_v, moves, nodes, room, saltation, inertias, one_size, .. } = self;
+        let workspace = &mut room.workspace;
         let Saltation { held, .. } = saltation;
         let (model, node, count) = (&system.model, &mut nodes[i], by.parameters.len());
         let (slopes, n) = (&mut node.slopes, model.nv());

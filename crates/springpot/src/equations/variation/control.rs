@@ -12,7 +12,7 @@ impl Variation {
         let NodeVariation { t, kinematics, slopes, v_now, a_now, readings, hessians, explicit, .. } =
             &mut self.nodes[i];
         let rests = |e: usize| &self.elements[e].rest[..];
-        let at = Place { t: *t, motion: [&self.q, v_now, a_now], kinematics, readings, rests: &rests };
+        let at = Place { t: *t, motion: [&self.coordinates.values, v_now, a_now], kinematics, readings, rests: &rests };
         // A force that is held follows from nothing.
         let (n, count) = (v_now.len(), explicit.len() / v_now.len().max(1));
         let rows: Vec<usize> = self.saltation.held.drives().map(|(k, _)| self.own_v[k]).collect();
@@ -66,7 +66,7 @@ impl Variation {
     pub(crate) fn say(&self, target: Target, shown: &dyn Shown) -> Vec<f64> {
         let (node, Some(control)) = (&self.nodes[ROW], &self.control) else { return Vec::new() };
         let rests = |e: usize| &self.elements[e].rest[..];
-        let motion = [&self.q[..], &node.v_now, &node.a_now];
+        let motion = [&self.coordinates.values[..], &node.v_now, &node.a_now];
         let at = Place { t: node.t, motion, kinematics: &node.kinematics, readings: &node.readings, rests: &rests };
         let forces = |e: usize| (shown.force(e), self.elements[e].row[0].clone());
         control.say(target, at, &forces, [&node.q, &node.v, &node.a])
@@ -135,7 +135,7 @@ impl Variation {
         }
         let node = &self.nodes[i];
         let rests = |e: usize| &self.elements[e].rest[..];
-        let motion = [&self.q[..], &node.v_now, &node.a_now];
+        let motion = [&self.coordinates.values[..], &node.v_now, &node.a_now];
         let at = Place { t: node.t, motion, kinematics: &node.kinematics, readings: &node.readings, rests: &rests };
         let found = control.foresee(i, run, at, [&node.q, &node.v]);
         let t = node.t;

@@ -169,7 +169,7 @@ impl Variation {
             self.measure(e, i);
             self.observe(equations, (e, i), theta, &at.elements[e].point(at.t));
         }
-        let mut solve = std::mem::take(&mut self.solve);
+        let mut solve = std::mem::take(&mut self.room.solve);
         if solve.factor_part(&self.nodes[i].slopes.d_a, n, &free) {
             let mut right = vec![0.0; free.len() * count];
             for (sum, &row) in right.chunks_exact_mut(count.max(1)).zip(&free) {
@@ -183,7 +183,7 @@ impl Variation {
         } else {
             self.nodes[i].a.fill(f64::NAN);
         }
-        self.solve = solve;
+        self.room.solve = solve;
     }
 
     /// What changes of the motion at θ of a step of size `h`, into node [`ROW`]: as rows have it between its ends, whose accelerations are known, but that

@@ -41,7 +41,7 @@ impl Variation {
 
     /// What changes of coordinate `k` of the run at the row.
     fn coordinate(&self, k: usize) -> Vec<f64> {
-        let (count, model, node, place) = (self.count(), &self.system.model, &self.nodes[ROW], self.own_q[k]);
+        let (count, model, node, place) = (self.count(), &self.system.model, &self.nodes[ROW], self.coordinates.own[k]);
         let joint = model.own_joints().find(|&j| model.q_range(j).contains(&place)).expect("a coordinate of a joint");
         let (q, v) = (model.q_range(joint), model.v_range(joint));
         let slopes = model.joint_space(joint).slopes(&node.q_now[q.clone()], place - q.start);

@@ -360,7 +360,7 @@ impl Variation {
         let owed = self.change_of_mass(&jump);
         let mut change = vec![0.0; n * count];
         let [start, ..] = &self.nodes;
-        if !self.solve.factor_part(&start.slopes.d_a, n, &free) {
+        if !self.room.solve.factor_part(&start.slopes.d_a, n, &free) {
             return self.lose_all(t, "velocities jump with that of a joint that a signal moves");
         }
         self.solve_free(&free, &owed, &mut change);

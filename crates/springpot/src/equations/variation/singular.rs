@@ -7,7 +7,7 @@
 //!
 //! Changes of x(0) are singular also where the run itself is not, x(0) being 0.
 
-use super::{ElementVariation, ROW, Variation, of_step};
+use super::{ElementVariation, ROW, Room, Variation, of_step};
 use crate::collocation::STAGES;
 use crate::dynamics::{Kinematics, RneaDerivatives, rnea_at_into};
 use crate::elements::Forces;
@@ -118,7 +118,7 @@ impl Variation {
         }
         let (count, n, free) = (self.count(), self.nv(), self.of_run(equations.free()));
         let regular = {
-            let Self { nodes: [start, ..], solve, .. } = self;
+            let Self { nodes: [start, ..], room: Room { solve, .. }, .. } = self;
             !free.is_empty() && solve.factor_part(&start.slopes.d_a, n, &free)
         };
         let mut right = Vec::new();
@@ -129,7 +129,7 @@ impl Variation {
             if regular {
                 right.clear();
                 right.extend(free.iter().map(|&k| -self.nodes[0].gradients[e][0][k]));
-                self.solve.solve(&mut right);
+                self.room.solve.solve(&mut right);
                 free.iter().zip(&right).for_each(|(&k, x)| own.of_force[k] = *x);
                 let mut owed = self.change_of_mass(&own.of_force);
                 let [start, ..] = &self.nodes;
@@ -148,7 +148,7 @@ impl Variation {
     /// δM a where the step starts, velocity by velocity in blocks: ∂(M a)/∂q δq + ∂M/∂θ a.
     pub(super) fn change_of_mass(&mut self, a: &[f64]) -> Vec<f64> {
         let (count, n) = (self.count(), self.nv());
-        let Self { system, by, nodes: [start, ..], workspace, .. } = self;
+        let Self { system, by, nodes: [start, ..], room: Room { workspace, .. }, .. } = self;
         let (model, tau) = (&system.model, &mut vec![0.0; n]);
         let (mut still, none) = (Kinematics::new(model), vec![0.0; n]);
         still.update_velocity(model, &start.q_now, &none);
@@ -181,7 +181,7 @@ impl Variation {
     pub(super) fn solve_free(&mut self, free: &[usize], owed: &[f64], out: &mut [f64]) {
         let count = self.count();
         let mut right: Vec<f64> = free.iter().flat_map(|&k| &owed[k * count..(k + 1) * count]).map(|x| -x).collect();
-        self.solve.solve_rows(&mut right, count);
+        self.room.solve.solve_rows(&mut right, count);
         for (own, &k) in right.chunks_exact(count.max(1)).zip(free) {
             out[k * count..(k + 1) * count].copy_from_slice(own);
         }

@@ -4,6 +4,8 @@ use super::{Variation, of_step};
 use crate::collocation::STAGES;
 use crate::equations::assembly::Equations;
 use crate::law::variation::VariationError;
+use crate::sensitivity::Sensitivity;
+use serde::{Deserialize, Serialize};
 
 /// What changes may err in a step, in units of what the motion may: so they come to the accuracy that the motion comes to in its own steps.
 pub(crate) const TANGENTS: f64 = 4.0;
@@ -24,6 +26,43 @@ pub(crate) struct StepErrors<'a> {
     pub(crate) rtol: f64,
 }
 
+/// How large changes have been.
+#[derive(Debug)]
+pub(super) struct Sizes {
+    pub(super) so_far: SizesSoFar,
+    /// For each parameter, by how much of what the motion comes to it is expected to change that at least, in units of the parameter.
+    expected: Vec<f64>,
+}
+
+/// What of it outlasts a step.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct SizesSoFar {
+    /// Of q and v, in the blocks of the nodes.
+    motion: [Vec<f64>; 2],
+    /// Of the inner variables of every element.
+    hidden: Vec<Vec<f64>>,
+}
+
+impl Sizes {
+    pub(super) fn new(by: &Sensitivity, nv: usize, elements: usize) -> Self {
+        let (count, typical) = (by.parameters.len(), by.parameters.iter().map(|parameter| parameter.typical.abs()));
+        let zeros = || vec![0.0; nv * count];
+        Self {
+            so_far: SizesSoFar { motion: [zeros(), zeros()], hidden: vec![Vec::new(); elements] },
+            expected: typical.map(|typical| if typical == 0.0 { 0.0 } else { BEGUN / typical }).collect(),
+        }
+    }
+}
+
+impl SizesSoFar {
+    /// Whether those of a run of the same parameters, robot and elements.
+    pub(super) fn fits(&self, other: &Self) -> bool {
+        self.motion[0].len() == other.motion[0].len()
+            && self.motion[1].len() == other.motion[1].len()
+            && self.hidden.len() == other.hidden.len()
+    }
+}
+
 impl Variation {
     /// Whether its errors share in the choice of steps.
     pub(crate) fn shares_in_steps(&self) -> bool {
@@ -37,7 +76,7 @@ impl Variation {
     /// measured by them, and what begins like no power of t, alike on every scale of it, by the travel and the speed of the motion itself.
     pub(crate) fn step_error(&self, rows: &[usize], StepErrors { errors, moved, rtol }: StepErrors) -> f64 {
         let count = self.count();
-        let (last, [sizes_q, sizes_v]) = (&self.nodes[STAGES], &self.sizes);
+        let (last, [sizes_q, sizes_v]) = (&self.nodes[STAGES], &self.sizes.so_far.motion);
         let sized = |k: usize| {
             let block = k * count..(k + 1) * count;
             let of = |sizes: &'_ [f64], last: &'_ [f64]| -> Vec<f64> {
@@ -61,7 +100,7 @@ impl Variation {
                 let errors = &errors[r * count..(r + 1) * count];
                 for (p, (sum, error)) in sums.iter_mut().zip(errors).enumerate() {
                     let jump = if of_place { self.jump_travel(k, p) } else { 0.0 };
-                    let allowed = rtol * own[p].max(beside[p]).max(moved * self.expected[p]).max(jump);
+                    let allowed = rtol * own[p].max(beside[p]).max(moved * self.sizes.expected[p]).max(jump);
                     *sum += if *error == 0.0 { 0.0 } else { (error / allowed).powi(2) };
                 }
             }
@@ -76,7 +115,7 @@ impl Variation {
     /// The estimate of the step's error of what changes of the inner variables of laws, the worst one in units of its tolerance, `rtol` of its size.
     pub(crate) fn hidden_error(&self, equations: &Equations, rtol: f64) -> f64 {
         let (mut worst, count) = (0.0f64, self.count());
-        for ((e, element), sizes) in self.elements.iter().enumerate().zip(&self.hidden) {
+        for ((e, element), sizes) in self.elements.iter().enumerate().zip(&self.sizes.so_far.hidden) {
             if element.law.variables().is_empty() {
                 continue;
             }
@@ -87,7 +126,7 @@ impl Variation {
                     return;
                 }
                 let so_far = sizes.get(variable * count + p).copied().unwrap_or(0.0);
-                let share = error / (rtol * so_far.max(change).max(coming).max(self.expected[p] * size));
+                let share = error / (rtol * so_far.max(change).max(coming).max(self.sizes.expected[p] * size));
                 worst = if share.is_nan() { f64::INFINITY } else { worst.max(share) };
             });
         }
@@ -96,22 +135,18 @@ impl Variation {
 
     /// Takes in how large the changes where the next step starts are.
     pub(super) fn take_sizes(&mut self) {
-        for (element, sizes) in self.elements.iter().zip(&mut self.hidden) {
+        for (element, sizes) in self.elements.iter().zip(&mut self.sizes.so_far.hidden) {
             let now = element.law.variables();
             sizes.resize(now.len(), 0.0);
             sizes.iter_mut().zip(now).for_each(|(size, now)| *size = size.max(now.abs()));
         }
-        let (count, Self { nodes: [start, ..], sizes: [q, v], own_v, .. }) = (self.by.parameters.len(), self);
+        let (count, Self { nodes: [start, ..], sizes, own_v, .. }) = (self.by.parameters.len(), self);
+        let [q, v] = &mut sizes.so_far.motion;
         for (sizes, now) in [(q, &start.q), (v, &start.v)] {
             for block in own_v.iter().map(|k| k * count..(k + 1) * count) {
                 let now = now[block.clone()].iter();
                 sizes[block].iter_mut().zip(now).for_each(|(size, now)| *size = size.max(now.abs()));
             }
         }
-    }
-
-    /// For each parameter, by how much of what the motion comes to it is expected to change that at least, in units of the parameter.
-    pub(super) fn expected(typical: impl Iterator<Item = f64>) -> Vec<f64> {
-        typical.map(|typical| if typical == 0.0 { 0.0 } else { BEGUN / typical.abs() }).collect()
     }
 }

@@ -3,6 +3,7 @@
 use super::energies::WorksDone;
 use super::saltation::Saltation;
 use super::singular::SingularState;
+use super::sizes::SizesSoFar;
 use super::{NodeVariation, Variation};
 use crate::equations::assembly::Equations;
 use crate::equations::control::ControlVariationState;
@@ -15,8 +16,7 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct VariationState {
     /// Blocks of q, v and a where the next step starts.
     motion: [Vec<f64>; 3],
-    sizes: [Vec<f64>; 2],
-    hidden: Vec<Vec<f64>>,
+    sizes: SizesSoFar,
     singular: SingularState,
     laws: Vec<LawVariation>,
     saltation: Saltation,
@@ -34,8 +34,7 @@ impl Variation {
         let control = self.control.as_ref().map(|control| control.save());
         VariationState {
             motion: [q.clone(), v.clone(), a.clone()],
-            sizes: self.sizes.clone(),
-            hidden: self.hidden.clone(),
+            sizes: self.sizes.so_far.clone(),
             singular: self.singular.save(self.count()),
             laws,
             control,
@@ -47,14 +46,14 @@ impl Variation {
 
     /// Goes on from what was saved where the run is at `start`; `false` where that is of another one.
     pub(crate) fn load(&mut self, state: VariationState, equations: &Equations, start: Node) -> bool {
-        let VariationState { motion: [q, v, a], sizes, hidden, singular, laws, control, saltation, works, accelerated } =
-            state;
-        let (blocks, count) = (self.sizes[0].len(), self.count());
+        let VariationState { motion: [q, v, a], sizes, singular, laws, control, saltation, works, accelerated } = state;
+        let (blocks, count) = (self.nodes[0].q.len(), self.count());
         if !self.singular.load(singular, count)
-            || [laws.len(), hidden.len()] != [self.elements.len(); 2]
+            || laws.len() != self.elements.len()
+            || !sizes.fits(&self.sizes.so_far)
             || !saltation.fits(self.count())
             || !self.works.load(works)
-            || [&q, &v, &a].into_iter().chain(&sizes).any(|own| own.len() != blocks)
+            || [&q, &v, &a].into_iter().any(|own| own.len() != blocks)
         {
             return false;
         }
@@ -66,7 +65,7 @@ impl Variation {
             return false;
         }
         let [node, ..] = &mut self.nodes;
-        (node.q, node.v, node.a, self.sizes, self.hidden) = (q, v, a, sizes, hidden);
+        (node.q, node.v, node.a, self.sizes.so_far) = (q, v, a, sizes);
         self.place_nodes();
         self.saltation = saltation;
         self.elements.iter_mut().zip(laws).for_each(|(element, law)| element.law = law);

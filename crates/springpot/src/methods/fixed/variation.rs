@@ -175,7 +175,7 @@ impl OneStage {
     ) -> bool {
         let (n, count, own) = (variation.nv(), variation.count(), free.len());
         let held: Vec<bool> = self.free.iter().map(|&k| self.held[k]).collect();
-        let mut solve = std::mem::take(&mut variation.solve);
+        let mut solve = std::mem::take(&mut variation.room.solve);
         let [_, stage, .., end, _] = &variation.nodes;
         let regular = !found.is_first()
             || solve.factor(own, |matrix| {
@@ -204,7 +204,7 @@ impl OneStage {
                 }
             });
         if regular {
-            let mut right = std::mem::take(&mut variation.right);
+            let mut right = std::mem::take(&mut variation.room.right);
             right.clear();
             right.resize(own * count, 0.0);
             let mut forces = vec![0.0; equations.bank.len() * count];
@@ -228,9 +228,9 @@ impl OneStage {
                 found.add(&mut a[k * count..][..count], own);
             }
             found.go_on();
-            variation.right = right;
+            variation.room.right = right;
         }
-        variation.solve = solve;
+        variation.room.solve = solve;
         regular && !found.fails()
     }
 }

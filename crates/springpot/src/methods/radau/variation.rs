@@ -271,11 +271,11 @@ impl RadauStep {
     ) -> bool {
         let (count, own) = (variation.count(), free.len());
         let size = STAGES * own;
-        let mut solve = std::mem::take(&mut variation.solve);
+        let mut solve = std::mem::take(&mut variation.room.solve);
         let regular =
             !found.is_first() || solve.factor(size, |matrix| self.fill_matrix(equations, variation, (free, h), matrix));
         if regular {
-            let mut right = std::mem::take(&mut variation.right);
+            let mut right = std::mem::take(&mut variation.room.right);
             right.clear();
             right.resize(size * count, 0.0);
             let mut forces = vec![0.0; variation.elements.len() * count];
@@ -300,9 +300,9 @@ impl RadauStep {
                 }
             }
             found.go_on();
-            variation.right = right;
+            variation.room.right = right;
         }
-        variation.solve = solve;
+        variation.room.solve = solve;
         regular && !found.fails()
     }
 
