@@ -1,7 +1,6 @@
 //! Robots that are controlled: derivatives by gains, orders, references and limits, and by all else through them.
 
-use super::{ARM, compare, compare_within, plan, rows, said, scenario};
-use springpot::Simulation;
+use super::{ARM, compare, compare_within, goes_on_to_the_bit, plan, rows, said, scenario};
 
 /// The arm with a springpot across its second joint under this controller.
 pub(crate) fn arm(controller: &str) -> String {
@@ -282,26 +281,8 @@ fn states_take_what_control_changes_with_them() {
         format!("{{ {pid}, {MOVE}, rate_limits = {{ q1 = 60, q2 = 50, q3 = 200 }} }}"),
         format!("{{ {pid}, {MOVE}, sample = \"20 ms\", delay = \"20 ms\" }}"),
     ] {
-        let mut asked = scenario(&arm(&format!("controller = {controller}")));
-        asked.differentiate("motion.controller.kp,motion.controller.mu,element.strut.c").unwrap();
-        let plan = plan(&asked).unwrap();
-        let begin = || Simulation::new(plan.system(), plan.settings.clone()).unwrap();
-        let (mut first, mut second) = (begin(), begin());
-        let pass = |simulation: &mut Simulation, t: f64| {
-            while simulation.t() < t {
-                simulation.step().unwrap();
-            }
-        };
-        pass(&mut first, 0.15);
-        let state = first.state().unwrap();
-        second.set_state(&state).unwrap();
-        let all = |simulation: &mut Simulation| {
-            pass(simulation, 0.35);
-            let snapshot = simulation.interpolate(0.35).unwrap();
-            let quantities = plan.system().observables().quantities();
-            quantities.into_iter().map(|of| snapshot.value(of).to_bits()).collect::<Vec<_>>()
-        };
-        assert_eq!(all(&mut first), all(&mut second));
+        let text = arm(&format!("controller = {controller}"));
+        goes_on_to_the_bit(&text, "motion.controller.kp,motion.controller.mu,element.strut.c", 0.15, &[0.35]);
     }
 }
 

@@ -1,7 +1,7 @@
 //! Robots that float or turn freely: twists inside, derivatives of the components of quaternions in the columns.
 
 use super::steps::stepped;
-use super::{compare, compare_within, plan, said, scenario};
+use super::{compare, compare_within, goes_on_to_the_bit, plan, said, scenario};
 use springpot::Simulation;
 use springpot::observe::Quantity;
 
@@ -237,25 +237,7 @@ memory_rtol = 1e-12
 
 #[test]
 fn states_go_on_to_the_bit() {
-    let mut asked = scenario(FLOAT);
-    asked.differentiate("element.rope.alpha,motion.start.q.base.rpy.1").unwrap();
-    let plan = plan(&asked).unwrap();
-    let begin = || Simulation::new(plan.system(), plan.settings.clone()).unwrap();
-    let (mut first, mut second) = (begin(), begin());
-    let pass = |simulation: &mut Simulation, t: f64| {
-        while simulation.t() < t {
-            simulation.step().unwrap();
-        }
-    };
-    pass(&mut first, 0.15);
-    second.set_state(&first.state().unwrap()).unwrap();
-    let all = |simulation: &mut Simulation| {
-        pass(simulation, 0.3);
-        let snapshot = simulation.interpolate(0.3).unwrap();
-        let quantities = plan.system().observables().quantities();
-        quantities.into_iter().map(|of| snapshot.value(of).to_bits()).collect::<Vec<_>>()
-    };
-    assert_eq!(all(&mut first), all(&mut second));
+    goes_on_to_the_bit(FLOAT, "element.rope.alpha,motion.start.q.base.rpy.1", 0.15, &[0.3]);
 }
 
 #[test]

@@ -135,6 +135,28 @@ fn rows(plan: &Plan, names: &[String]) -> Vec<Vec<f64>> {
     ROWS.map(row).to_vec()
 }
 
+/// A run that goes on from the state that another one of the same has at `from` has all numbers of rows at these times to the bit.
+fn goes_on_to_the_bit(text: &str, by: &str, from: f64, times: &[f64]) {
+    let mut asked = scenario(text);
+    asked.differentiate(by).unwrap();
+    let plan = plan(&asked).unwrap();
+    let quantities = plan.system().observables().quantities();
+    let begin = || Simulation::new(plan.system(), plan.settings.clone()).unwrap();
+    let (mut first, mut second) = (begin(), begin());
+    let pass = |simulation: &mut Simulation, t: f64| {
+        while simulation.t() < t {
+            simulation.step().unwrap();
+        }
+        let snapshot = simulation.interpolate(t).unwrap();
+        quantities.iter().map(|of| snapshot.value(*of).to_bits()).collect::<Vec<_>>()
+    };
+    pass(&mut first, from);
+    second.set_state(&first.state().unwrap()).unwrap();
+    for &t in times {
+        assert_eq!(pass(&mut first, t), pass(&mut second, t));
+    }
+}
+
 /// Compares derivatives of all columns by the numbers at these paths with differences of whole runs.
 fn compare(text: &str, columns: &[&str], paths: &[(&str, f64)]) {
     compare_within(1e-7, text, columns, paths);

@@ -3,7 +3,7 @@
 use super::changes::SLIDERS;
 use super::control::arm;
 use super::laws::slider;
-use super::{ARM, COLUMNS, COLUMNS_OF_SLIDER, compare, compare_within, plan, said, scenario};
+use super::{ARM, COLUMNS, COLUMNS_OF_SLIDER, compare, compare_within, goes_on_to_the_bit, plan, said, scenario};
 use springpot::Simulation;
 
 const METHODS: [&str; 2] = ["backward-euler", "midpoint"];
@@ -168,25 +168,7 @@ fn states_go_on_to_the_bit() {
         ),
         "midpoint",
     );
-    let mut asked = scenario(&text);
-    asked.differentiate("motion.controller.kp,element.tendon.alpha").unwrap();
-    let plan = plan(&asked).unwrap();
-    let begin = || Simulation::new(plan.system(), plan.settings.clone()).unwrap();
-    let (mut first, mut second) = (begin(), begin());
-    let pass = |simulation: &mut Simulation, t: f64| {
-        while simulation.t() < t {
-            simulation.step().unwrap();
-        }
-        let snapshot = simulation.interpolate(t).unwrap();
-        let quantities = plan.system().observables().quantities();
-        quantities.into_iter().map(|of| snapshot.value(of).to_bits()).collect::<Vec<_>>()
-    };
-    pass(&mut first, 0.1511);
-    let state = first.state().unwrap();
-    second.set_state(&state).unwrap();
-    for t in [0.1573, 0.3519] {
-        assert_eq!(pass(&mut first, t), pass(&mut second, t));
-    }
+    goes_on_to_the_bit(&text, "motion.controller.kp,element.tendon.alpha", 0.1511, &[0.1573, 0.3519]);
 }
 
 #[test]

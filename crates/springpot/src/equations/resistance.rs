@@ -17,11 +17,26 @@ struct Resisting {
 
 impl Resisting {
     fn resistance(&self) -> f64 {
-        let direction = match self.law {
-            FrictionLaw::Smooth { speed } => (self.speed / speed).tanh(),
-            FrictionLaw::Sticking => sign(self.speed),
-        };
-        self.damping * self.speed + self.friction * direction
+        self.damping * self.speed + self.friction * direction(self.law, self.speed)
+    }
+
+    /// Its derivative by the speed, without the friction that sticks.
+    fn slope(&self) -> f64 {
+        match self.law {
+            FrictionLaw::Smooth { speed: width } => {
+                let sign = (self.speed / width).tanh();
+                self.damping + self.friction * (1.0 - sign * sign) / width
+            }
+            FrictionLaw::Sticking => self.damping,
+        }
+    }
+}
+
+/// What friction of 1 N or 1 N·m comes to at this speed.
+pub(super) fn direction(law: FrictionLaw, speed: f64) -> f64 {
+    match law {
+        FrictionLaw::Smooth { speed: width } => (speed / width).tanh(),
+        FrictionLaw::Sticking => sign(speed),
     }
 }
 
@@ -63,13 +78,7 @@ pub(crate) fn joint_loss(system: &System, v: &[f64]) -> f64 {
 /// Hands over what the power that damping and friction take changes by with each velocity: its index and the slope, W/(m/s) or W/(rad/s).
 pub(super) fn each_loss_slope(system: &System, v: &[f64], mut take: impl FnMut(usize, f64)) {
     for joint in resisting(&system.model, v) {
-        let own = match joint.law {
-            FrictionLaw::Smooth { speed: width } => {
-                joint.damping + joint.friction * (1.0 - (joint.speed / width).tanh().powi(2)) / width
-            }
-            FrictionLaw::Sticking => joint.damping,
-        };
-        take(joint.index, joint.ratio * (joint.resistance() + joint.speed * own));
+        take(joint.index, joint.ratio * (joint.resistance() + joint.speed * joint.slope()));
     }
 }
 
@@ -87,15 +96,8 @@ pub(crate) fn add_smooth_resistance(system: &System, v: &[f64], tau: &mut [f64])
 /// Adds the derivatives of [`add_smooth_resistance`] by v to ∂τ/∂v (nv × nv).
 pub(crate) fn add_tangents(system: &System, v: &[f64], d_v: &mut [f64]) {
     let n = system.model.nv();
-    for Resisting { index, ratio, speed, damping, friction, law } in resisting(&system.model, v) {
-        let slope = match law {
-            FrictionLaw::Smooth { speed: width } => {
-                let sign = (speed / width).tanh();
-                damping + friction * (1.0 - sign * sign) / width
-            }
-            FrictionLaw::Sticking => damping,
-        };
-        d_v[index * n + index] += ratio * ratio * slope;
+    for joint in resisting(&system.model, v) {
+        d_v[joint.index * n + joint.index] += joint.ratio * joint.ratio * joint.slope();
     }
 }
 

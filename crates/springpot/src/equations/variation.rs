@@ -87,6 +87,9 @@ pub(crate) struct Room {
     pub(crate) right: Vec<f64>,
 }
 
+/// How often what changes of temperatures is found together with what changes of the motion.
+const MOST_PASSES: usize = 20;
+
 /// Change of the forces, in units of the largest, at which they are found.
 const SETTLED: f64 = 1e-12;
 
@@ -618,9 +621,23 @@ impl Variation {
         self.ask_singular(equations);
     }
 
+    /// Works out what changes at the nodes by `once`, which is told whether it is `again`: as often as temperatures follow from losses, and those from what
+    /// was found. False where `once` finds nothing.
+    pub(crate) fn pass(&mut self, equations: &Equations, mut once: impl FnMut(&mut Self, bool) -> bool) -> bool {
+        for pass in 0..MOST_PASSES {
+            if pass > 0 && !self.ask_again(equations) {
+                break;
+            }
+            if !once(self, pass > 0) {
+                return false;
+            }
+        }
+        true
+    }
+
     /// Asks again the laws that follow what changes of strokes and rates at the nodes by more than their tangents: those whose losses warm them; false
     /// where they answer as before.
-    pub(crate) fn ask_again(&mut self, equations: &Equations) -> bool {
+    fn ask_again(&mut self, equations: &Equations) -> bool {
         let warms = |element: &crate::elements::Element| {
             element.law.as_heated().is_some_and(|heated| heated.heat().thermal.is_some())
         };

@@ -345,6 +345,6 @@ impl<'a> PointVariation<'a> {
 }
 
 /// Adds factor·block to a block.
-pub(super) fn add(to: &mut [f64], factor: f64, block: &[f64]) {
+pub(crate) fn add(to: &mut [f64], factor: f64, block: &[f64]) {
     to.iter_mut().zip(block).for_each(|(to, x)| *to += factor * x);
 }

@@ -4,10 +4,9 @@ use super::{ROW, Variation, at_start, felt, of_step};
 use crate::collocation::{Nodes, STAGES};
 use crate::dynamics::{coriolis, gravity, kinetic_energy, potential_energy};
 use crate::equations::assembly::Equations;
-use crate::equations::resistance::each_loss_slope;
+use crate::equations::resistance::{direction, each_loss_slope};
 use crate::law::variation::{ObservationVariation, PowersVariation};
 use crate::law::{Power, Powers};
-use crate::model::FrictionLaw;
 use crate::observe::{ElementQuantity, EnergyQuantity, Quantity};
 use crate::sensitivity::{Seed, Sensitivity};
 use serde::{Deserialize, Serialize};
@@ -209,11 +208,7 @@ impl Variation {
                         Seed::Damping { joint, by } => flow[p] += by * felt(model, *joint, &node.v_now).2.powi(2),
                         Seed::Friction { joint, by } => {
                             let (_, _, speed) = felt(model, *joint, &node.v_now);
-                            flow[p] += by
-                                * match model.friction_laws()[*joint] {
-                                    FrictionLaw::Smooth { speed: width } => speed * (speed / width).tanh(),
-                                    FrictionLaw::Sticking => speed.abs(),
-                                };
+                            flow[p] += by * speed * direction(model.friction_laws()[*joint], speed);
                         }
                         _ => {}
                     }

@@ -299,15 +299,10 @@ impl Variation {
         is_own: bool,
     ) -> Result<(), SensitivityError> {
         let count = self.count();
-        let jump = |before: &[f64], after: &[f64], counts: &dyn Fn(usize) -> bool| {
-            let largest = before.iter().chain(after).fold(0.0, |largest: f64, x| largest.max(x.abs()));
-            let pairs = before.iter().zip(after).enumerate().filter(|(k, _)| counts(*k));
-            pairs.fold(0.0, |jump: f64, (_, (before, after))| jump.max((before - after).abs())) > JUMP * largest
-        };
         let ([v, a], [v_after, a_after]) = (before, after);
         let arrived = self.saltation.arrived.take();
         let a = arrived.as_deref().unwrap_or(a);
-        if jump(v, v_after, &|k| equations.free().contains(&k)) {
+        if jumps(JUMP, v, v_after, |k| equations.free().contains(&k)) {
             self.follow_jump(start.t, [v, v_after]);
         }
         match self.saltation.later.take() {
@@ -321,7 +316,7 @@ impl Variation {
                 self.cross_works(equations, &later);
                 self.saltation.last = Some((start.t, later));
             }
-            None if is_own && jump(a, a_after, &|_| true) => self.lose_all(start.t, "forces jump there"),
+            None if is_own && jumps(JUMP, a, a_after, |_| true) => self.lose_all(start.t, "forces jump there"),
             None => {
                 self.saltation.jumping.clear();
                 self.saltation.last = None;
@@ -389,4 +384,11 @@ impl Variation {
             }
         }
     }
+}
+
+/// Whether one of the numbers that count jumps by more than this share of the largest.
+pub(super) fn jumps(share: f64, before: &[f64], after: &[f64], counts: impl Fn(usize) -> bool) -> bool {
+    let largest = before.iter().chain(after).fold(0.0, |largest: f64, x| largest.max(x.abs()));
+    let pairs = before.iter().zip(after).enumerate().filter(|(k, _)| counts(*k));
+    pairs.fold(0.0, |jump: f64, (_, (before, after))| jump.max((before - after).abs())) > share * largest
 }

@@ -16,9 +16,6 @@ use crate::system::fixed_step::Method;
 const FOUND: f64 = 1e-4;
 const BESIDE: f64 = 1e-6;
 
-/// How often what changes of temperatures is found together with what changes of the motion.
-const MOST_PASSES: usize = 20;
-
 /// A joint that turns freely: its first velocity in the extended robot, and how the steps to the stage and to the end answer.
 struct TurnedStep {
     first: usize,
@@ -37,16 +34,7 @@ impl OneStage {
             sliding[self.free[candidate.place]] = f64::from(*direction);
         }
         variation.see_stage(equations, [stage, end], &force, sliding.into_iter());
-        for pass in 0..MOST_PASSES {
-            // Temperatures follow from losses, and those from strokes and rates.
-            if pass > 0 && !variation.ask_again(equations) {
-                break;
-            }
-            if !self.vary_once(equations, variation, (h, pass > 0)) {
-                return false;
-            }
-        }
-        true
+        variation.pass(equations, |variation, again| self.vary_once(equations, variation, (h, again)))
     }
 
     /// Whether the iterations of the step came to its solution, as they do but where smooth friction is steeper than the step.

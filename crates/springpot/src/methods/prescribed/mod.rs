@@ -200,6 +200,12 @@ impl Prescribed {
         variation.hidden_error(equations, TANGENTS * settings.rtol)
     }
 
+    /// The step is tried again at this size, or somewhat below its own.
+    fn rejected(&self, cx: Context, recorder: &Recorder, step: &Target, size: f64) -> Result<Trial, RunError> {
+        let size = size.min(0.7 * step.size);
+        self.gives_up(cx, recorder, step, size).map_or(Ok(Trial::Rejected { size }), Err)
+    }
+
     /// The first evaluation behind a kink, to which coordinates must not jump from that at index `from` of the recorder.
     fn look_across(
         &self,
@@ -316,22 +322,14 @@ impl Stepper for Prescribed {
         let next = step.size * self.error.factor();
         if !self.error.accepted() {
             self.refused = Some((step.from, (0..cx.system.elements.len()).map(|e| gap(recorder, e)).collect()));
-            let size = next.min(0.7 * step.size);
-            let too_small = self.gives_up(cx, recorder, &step, size);
-            return too_small.map_or(Ok(Trial::Rejected { size }), Err);
+            return self.rejected(cx, recorder, &step, next);
         }
-        let next = match self.variation_error(recorder, &step) {
-            0.0 => next,
-            error => {
-                let own = step.size * StepError { memory: error, ..StepError::NONE }.factor();
-                if error > 1.0 {
-                    let size = own.min(0.7 * step.size);
-                    let too_small = self.gives_up(cx, recorder, &step, size);
-                    return too_small.map_or(Ok(Trial::Rejected { size }), Err);
-                }
-                next.min(own)
-            }
-        };
+        let changes = StepError { memory: self.variation_error(recorder, &step), ..StepError::NONE };
+        let by_changes = step.size * changes.factor();
+        if !changes.accepted() {
+            return self.rejected(cx, recorder, &step, by_changes);
+        }
+        let next = next.min(by_changes);
         // Before any row is written, since a jump must leave none behind.
         self.behind = match step.behind {
             Behind::Kink(after) => Some(self.look_across(cx, recorder, STAGES, after)?),

@@ -12,9 +12,6 @@ use crate::equations::{Equations, Found, ROW, StepErrors, TANGENTS, Variation};
 use crate::linalg::Lu;
 use crate::model::{FreeTurn, Turned, add_turned};
 
-/// How often what changes of temperatures is found together with what changes of the motion.
-const MOST_PASSES: usize = 20;
-
 /// A joint that turns freely over a step: how its turns at the stages answer to its velocities there.
 #[derive(Debug)]
 pub(super) struct TurnedStages {
@@ -102,16 +99,7 @@ impl RadauStep {
         if !self.model.is_one_degree() && !self.look_at_turns(equations, variation, h) {
             return false;
         }
-        for pass in 0..MOST_PASSES {
-            // Temperatures follow from losses, and those from strokes and rates at the nodes.
-            if pass > 0 && !variation.ask_again(equations) {
-                break;
-            }
-            if !self.vary_once(equations, variation, &free, (h, pass > 0)) {
-                return false;
-            }
-        }
-        true
+        variation.pass(equations, |variation, again| self.vary_once(equations, variation, &free, (h, again)))
     }
 
     /// Works out what changes at the stages; where asked `again`, under what changes of the forces that is known.

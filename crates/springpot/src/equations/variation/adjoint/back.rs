@@ -10,6 +10,7 @@ use crate::collocation::radau::{A, A_SQUARED};
 use crate::collocation::{RADAU_NODES, STAGES, TABLEAU, integrals};
 use crate::equations::solve::Solve;
 use crate::fractional::{MemoryAdjoint, PastOfStep};
+use crate::law::variation::add;
 use crate::law::variation::probe::{RATE, STROKE};
 
 /// Columns of a row of a law.
@@ -42,10 +43,6 @@ struct Stage {
     /// Strokes and rates of the elements.
     strokes: Vec<Vec<f64>>,
     rates: Vec<Vec<f64>>,
-}
-
-fn add(to: &mut [f64], factor: f64, by: &[f64]) {
-    to.iter_mut().zip(by).for_each(|(to, by)| *to += factor * by);
 }
 
 impl Tape {

@@ -3,10 +3,12 @@
 use super::begin::tell_inputs;
 use super::tape::{Entry, KEPT, Row, RowOfElement, Slopes, Sparse, Start, Step, StepOfElement};
 use super::{MOST, Recording, Tape};
-use crate::collocation::STAGES;
+use crate::collocation::{MAX_NODES, STAGES};
 use crate::equations::assembly::Equations;
 use crate::equations::node::Node;
+use crate::equations::variation::saltation::jumps;
 use crate::equations::variation::{ROW, Variation};
+use crate::law::variation::probe::LawProbe;
 use crate::observe::{Quantity, Snapshot};
 use crate::sensitivity::SensitivityError;
 
@@ -24,15 +26,14 @@ impl Recording {
     /// Keeps what the step that was seen, of size `h` and with this matrix, transposed, does; until it is taken into the past it may be another one.
     pub(crate) fn keep_step(&mut self, equations: &Equations, (h, free): (f64, &[usize]), matrix: Vec<f64>) {
         let stages = std::array::from_fn(|i| slopes(&self.variation, i + 1, free));
-        let element = |(e, law): (usize, &mut crate::law::variation::probe::LawProbe)| {
+        let element = |(e, law): (usize, &mut LawProbe)| {
             let response = equations.bank.response(e);
             let columns = law.columns();
             let mut forces = Sparse::default();
             let asked = law.ask(|told, own, forces| equations.bank.vary(e, told, own, forces));
             asked.chunks_exact(columns).enumerate().for_each(|(i, row)| forces.push_row(i, row));
-            let at = |slopes: &[[f64; crate::collocation::MAX_NODES]; crate::collocation::MAX_NODES]| {
-                std::array::from_fn(|i| std::array::from_fn(|m| slopes[i][m]))
-            };
+            let at =
+                |slopes: &[[f64; MAX_NODES]; MAX_NODES]| std::array::from_fn(|i| std::array::from_fn(|m| slopes[i][m]));
             StepOfElement {
                 response: [at(&response.d_stroke), at(&response.d_rate)],
                 forces,
@@ -152,17 +153,12 @@ impl Recording {
         [before, after]: [[&[f64]; 2]; 2],
         is_own: bool,
     ) -> Result<(), SensitivityError> {
-        let jump = |before: &[f64], after: &[f64]| {
-            let largest = before.iter().chain(after).fold(0.0, |largest: f64, x| largest.max(x.abs()));
-            let pairs = before.iter().zip(after);
-            pairs.fold(0.0, |jump: f64, (before, after)| jump.max((before - after).abs())) > JUMP * largest
-        };
         let ([v, a], [v_after, a_after]) = (before, after);
         let refuse = |what: &str| Err(SensitivityError::Backwards { what: format!("{what} at t = {} s", start.t) });
-        if jump(v, v_after) {
+        if jumps(JUMP, v, v_after, |_| true) {
             return refuse("velocities that jump");
         }
-        if is_own && jump(a, a_after) {
+        if is_own && jumps(JUMP, a, a_after, |_| true) {
             return refuse("forces that jump where the motion makes them");
         }
         let by = self.variation.by.clone();
@@ -179,9 +175,8 @@ impl Recording {
         let mass = &self.variation.nodes[0].slopes.d_a;
         let mass = free.iter().flat_map(|&column| free.iter().map(move |&row| mass[row * n + column])).collect();
         let slopes = slopes(&self.variation, 0, &free);
-        let mut forces = Vec::new();
+        let (by, mut forces) = (self.variation.by.clone(), Vec::new());
         for (e, law) in self.laws.iter_mut().enumerate() {
-            let by = self.variation.by.clone();
             // Between two steps the row is the start itself.
             tell_inputs(law, &by, (e, ROW), start.t);
             let mut map = Sparse::default();
