@@ -1,6 +1,6 @@
 //! Triangles of mesh files, few enough for a page.
 
-use crate::mesh::{self, MeshFile, Part};
+use crate::mesh::{self, MeshFile, Part, Surface};
 use crate::scene::{Scene, Shape, Visual};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
@@ -11,13 +11,6 @@ const MOST_TRIANGLES: usize = 120_000;
 const MOST_BYTES: u64 = 512 << 20;
 /// Cells along the longest side of a mesh that is made coarser, at first.
 const CELLS: f32 = 96.0;
-
-/// Vertices and triangles.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Surface {
-    pub(crate) vertices: Vec<[f32; 3]>,
-    pub(crate) triangles: Vec<[u32; 3]>,
-}
 
 /// The surfaces of all mesh files of the scenes by their names, and a word on those that could not be read; names without a file have none.
 pub(crate) fn read_all<'a>(

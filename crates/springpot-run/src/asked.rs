@@ -1,12 +1,8 @@
 //! What a caller asks to be run: a scenario, and what is changed in it.
 
-use crate::sweep::Layout;
-use crate::warning::{Warn, robot_warnings};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
-use springpot::law::Catalog;
-use springpot::system::{Stop, System};
-use springpot_scenario::{Cases, Plan, RefusalKind, Refusals, Scenario};
+use springpot_scenario::{RefusalKind, Refusals, Scenario};
 use std::path::{Path, PathBuf};
 
 /// A scenario and what is set and swept beside it; it can be sent to other processes that see the files it names.
@@ -27,19 +23,6 @@ pub struct Asked {
     /// By what it is differentiated besides, `PATH,PATH` ([`Scenario::differentiate`]).
     #[serde(default)]
     pub sensitivity: Vec<String>,
-}
-
-/// A scenario that was looked through: its cases, the first of them, and the columns.
-#[derive(Debug)]
-pub struct Planned {
-    /// The cases.
-    pub cases: Cases,
-    /// The first of them.
-    pub plan: Plan,
-    /// Its system.
-    pub system: System,
-    /// The columns.
-    pub layout: Layout,
 }
 
 impl Asked {
@@ -94,20 +77,5 @@ impl Asked {
             Some(Err(refusals)) => refusals.iter().any(|refusal| refusal.kind != RefusalKind::File),
             None => false,
         }
-    }
-}
-
-impl Planned {
-    /// Looks a scenario through; a gripper path is followed no further once `stop` is set.
-    ///
-    /// # Errors
-    /// The scenario is refused.
-    pub fn of(scenario: &Scenario, catalog: &Catalog, stop: &Stop, warn: Warn<'_>) -> Result<Self, Refusals> {
-        let cases = scenario.cases(catalog)?;
-        let plan = cases.plan(0)?;
-        let system = plan.system_unless(stop);
-        robot_warnings(&cases).into_iter().for_each(warn);
-        let layout = Layout::new(&cases, &plan)?;
-        Ok(Self { cases, plan, system, layout })
     }
 }

@@ -1,7 +1,7 @@
 //! From what was prepared to results that are in place.
 
-use crate::asked::Planned;
 use crate::figures;
+use crate::planned::Planned;
 use crate::prepare::Prepared;
 use crate::scene::Drawn;
 use crate::sweep::{self, Options, Outcome, Progress, Status, SweepError};

@@ -45,7 +45,9 @@ pub mod labels;
 mod meshes;
 pub mod metrics;
 pub mod numbers;
+mod panels;
 pub mod parts;
+mod planned;
 mod prepare;
 mod record;
 mod report;
@@ -62,14 +64,16 @@ mod warning;
 /// A name for this build: what one build computes, another may round differently.
 pub const BUILD: &str = env!("SPRINGPOT_BUILD");
 
-pub use asked::{Asked, Planned};
+pub use asked::Asked;
 pub use export::{ExportError, ExportFormat, export};
 pub use finish::Finished;
 pub use follow::{NewRows, News, Tail, Underway};
+pub use planned::Planned;
 pub use prepare::{BeginError, NewRun, Prepared, Surroundings};
 pub use report::{comparison, quoted, report};
-pub use results::{COMPARISON_PAGE, REPORT_PAGE, Results, ResultsError, VIEW_PAGE, of_other_version};
+pub use results::{Results, ResultsError, of_other_version};
 pub use survey::{Depth, ElementSurvey, Found, Survey};
+pub use table::folder::{COMPARISON_PAGE, REPORT_PAGE, VIEW_PAGE};
 pub use table::sealed::{SealError, open, seal};
 pub use trouble::Trouble;
 pub use view::view;

@@ -4,8 +4,7 @@
 //! from a stranger, so it does not say what is read either: the robot's file is taken only while it is the very file that the run read (its mark, which
 //! nobody knows who has not seen it there), and meshes are those that this file names, inside its folder and its packages.
 
-use crate::record::Record;
-use serde::{Deserialize, Serialize};
+use crate::record::{Record, RobotFile};
 use springpot::model::urdf::{Urdf, UrdfOptions, Visual, VisualShape};
 use springpot_report::MeshFile;
 use springpot_report::scene::{Body, Scene, Shape, Visual as Drawn};
@@ -13,17 +12,6 @@ use springpot_scenario::UrdfPlan;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Component, Path, PathBuf, absolute};
-
-/// Where the robot of a run was.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct RobotFile {
-    /// Relative to the folder of the results.
-    file: String,
-    /// Folders that are packages or hold some, likewise.
-    package_path: Vec<String>,
-    /// What tells the file from any other.
-    mark: String,
-}
 
 /// A robot's file and the folders of its packages, as a plan has them.
 #[derive(Debug, Clone, PartialEq)]

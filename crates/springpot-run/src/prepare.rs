@@ -1,7 +1,8 @@
 //! What must be right before anything is run, whether a run begins or goes on.
 
-use crate::asked::{Asked, Planned};
+use crate::asked::Asked;
 use crate::figures;
+use crate::planned::Planned;
 use crate::scene::Drawn;
 use crate::survey::{Depth, Survey};
 use crate::sweep::{CheckpointError, Checkpoints, MergeError, Origin, Shard, Shards, Source, Unfinished};

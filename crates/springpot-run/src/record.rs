@@ -1,10 +1,9 @@
 //! run.json, read again.
 
 use crate::labels;
-use crate::meshes::RobotFile;
 use crate::table::disk::Disk;
 use crate::table::{push_number, push_text};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use springpot::table::Column;
 use springpot_report::scene::{LawText, Scene};
@@ -34,6 +33,17 @@ pub(crate) struct Record {
     pub(crate) scenes: Vec<Scene>,
     pub(crate) robots: Vec<RobotFile>,
     pub(crate) laws: Vec<LawText>,
+}
+
+/// Where the robot of a run was.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct RobotFile {
+    /// Relative to the folder of the results.
+    pub(crate) file: String,
+    /// Folders that are packages or hold some, likewise.
+    pub(crate) package_path: Vec<String>,
+    /// What tells the file from any other.
+    pub(crate) mark: String,
 }
 
 /// What came of all cases together.

@@ -8,13 +8,6 @@ use springpot::table::Column;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// What pages are called among the results that they show.
-pub const VIEW_PAGE: &str = "view.html";
-/// As [`VIEW_PAGE`], of reports.
-pub const REPORT_PAGE: &str = "report.html";
-/// As [`VIEW_PAGE`], of what two results have to do with each other.
-pub const COMPARISON_PAGE: &str = "comparison.html";
-
 /// What is to be said where the results in a folder are of another version of Springpot: names and meanings may have changed since.
 pub fn of_other_version(folder: &Path, version: &str) -> Option<Warning> {
     let own = env!("CARGO_PKG_VERSION");

@@ -34,6 +34,7 @@
 //! # Ok::<(), springpot_scenario::Refusals>(())
 //! ```
 
+mod cases;
 mod changes;
 pub mod csv;
 mod elements;
@@ -51,6 +52,7 @@ mod text;
 mod time;
 pub mod units;
 
+pub use cases::{Cases, SweptValue};
 pub use changes::path::equals_sign;
 pub use elements::past::PastPlan;
 pub use elements::plan::{ElementPlan, FramePlan, ShapePlan};
@@ -69,10 +71,10 @@ pub use plan::cure::Cure;
 pub use plan::design::{Constraint, DesignPlan};
 pub use plan::events::EventPlan;
 pub use plan::metrics::{Band, Metric, MetricPlan};
+pub use plan::sensitivity::{ParameterPlan, SensitivityPlan};
 pub use plan::{OutputPlan, Plan};
 pub use robot::described::{BodyPlaces, EndStops, Gripper, RobotPlan, UrdfPlan};
-pub use scenario::{Cases, LoneElement, Portable, Scenario, SweptValue, json_schema};
-pub use sensitivity::plan::{ParameterPlan, SensitivityPlan};
+pub use scenario::{LoneElement, Portable, Scenario, json_schema};
 pub use signals::plan::SignalPlan;
 pub use text::glob::matches;
 pub use text::names::{list, suggest};

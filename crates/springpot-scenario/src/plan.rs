@@ -7,6 +7,7 @@ pub(crate) mod events;
 pub(crate) mod metrics;
 mod output;
 mod resolved;
+pub(crate) mod sensitivity;
 pub(crate) mod steady;
 mod system;
 
@@ -17,8 +18,8 @@ use crate::plan::design::DesignPlan;
 use crate::plan::events::EventPlan;
 use crate::plan::metrics::MetricPlan;
 use crate::robot::described::{BodyPlaces, EndStops, Gripper, UrdfPlan};
-use crate::sensitivity::plan::SensitivityPlan;
 use crate::text::refusal::Remark;
+use sensitivity::SensitivityPlan;
 use springpot::model::{BodySpec, Model};
 use springpot::system::Settings;
 use std::sync::Arc;

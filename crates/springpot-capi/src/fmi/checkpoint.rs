@@ -1,7 +1,7 @@
 //! The state of an instance, kept or as bytes.
 
 use super::build::Setup;
-use super::instance::Mode;
+use super::mode::Mode;
 use crate::sealed;
 use serde::{Deserialize, Serialize};
 use springpot::driver::SimulationState;

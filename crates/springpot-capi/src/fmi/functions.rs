@@ -6,8 +6,9 @@
 
 use super::checkpoint::Checkpoint;
 use super::description::CATEGORIES;
-use super::instance::{Fault, Instance, Mode};
+use super::instance::{Fault, Instance};
 use super::log::{Log, Logger};
+use super::mode::Mode;
 use super::registry::{self, Slot};
 use super::resources::Resources;
 use super::uri;

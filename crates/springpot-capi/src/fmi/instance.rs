@@ -2,29 +2,14 @@
 
 use super::build::{Live, Setup};
 use super::checkpoint::Checkpoint;
+use super::mode::Mode;
 use super::resources::Resources;
 use super::variables::{Role, Variable};
-use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// Times of a master and of the simulation that differ by less than this share are one: masters add up their steps.
 const SAME_TIME: f64 = 1e-9;
-
-/// Where an instance is in its life (FMI 2.0.4, 4.2.4).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Mode {
-    /// Made, or reset: parameters and inputs may be set.
-    Instantiated,
-    /// Start values may be set, and what follows from them may be read.
-    Initialization,
-    /// At a communication point.
-    Stepping,
-    /// Over; values may be read.
-    Terminated,
-    /// A step failed: values of the last point may be read, a state set, the instance reset.
-    Failed,
-}
 
 /// Why a call was refused. Nothing was done.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

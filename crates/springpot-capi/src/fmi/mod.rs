@@ -27,6 +27,7 @@ mod instance;
 mod library;
 #[allow(unsafe_code)]
 mod log;
+mod mode;
 mod package;
 mod registry;
 mod resources;
@@ -35,8 +36,9 @@ mod variables;
 mod zip;
 
 pub use checkpoint::Checkpoint;
-pub use instance::{Fault, Instance, Mode};
+pub use instance::{Fault, Instance};
 pub use library::{LIBRARY, PLATFORM, is_this_library};
+pub use mode::Mode;
 pub use package::{Package, PackageError};
 pub use resources::Resources;
 pub use variables::{Role, Variable};

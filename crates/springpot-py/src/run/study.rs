@@ -9,9 +9,7 @@ use crate::scenario::{CATALOG, asked};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};
 use springpot::system::Stop;
-use springpot_run::sweep::{
-    CheckpointError, Outcome, Parcel, Progress, Shards, Source, Status, SweepError, Unfinished,
-};
+use springpot_run::sweep::{CheckpointError, Outcome, Parcel, Progress, Source, Status, SweepError, Unfinished};
 use springpot_run::table::Format;
 use springpot_run::table::disk::Disk;
 use springpot_run::{Asked, BeginError, NewRun, Planned, Prepared, Surroundings, Warning, labels};
@@ -344,7 +342,7 @@ impl Study {
             Err(error) => return Err(springpot_error(py, error)),
         }
         let failed = |error| springpot_error(py, error);
-        let ended = Shards::ended(out, with.disk, with.holder, &self.planned.layout).map_err(failed)?;
+        let ended = Parcel::under_way(out, with.disk, with.holder, &self.planned.layout).map_err(failed)?;
         Prepared::resume(out, None, figures, with, warn).map(|prepared| Some((prepared, ended))).map_err(failed)
     }
 }

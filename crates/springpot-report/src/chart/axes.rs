@@ -1,7 +1,7 @@
 //! One pair of axes with its ticks, grid and curves.
 
 use super::Scale;
-use super::clip::clip;
+use super::clip::{Area, clip};
 use super::data::{Range, Runs};
 use super::decimate::{self, decimate};
 use super::ticks::Ticks;
@@ -24,15 +24,6 @@ const MOST_DOTS: usize = 2_000;
 
 /// Radius of a dot, widths of its stroke.
 pub(super) const DOT: f64 = 1.5;
-
-/// The data area of a panel in pixels.
-#[derive(Clone, Copy)]
-pub(super) struct Area {
-    pub(super) left: f64,
-    pub(super) top: f64,
-    pub(super) width: f64,
-    pub(super) height: f64,
-}
 
 /// One axis with its ticks.
 #[derive(Clone, Copy)]

@@ -1,7 +1,15 @@
 //! Lines cut at the edges of a panel.
 
-use super::axes::Area;
 use crate::draw::Point;
+
+/// The data area of a panel in pixels.
+#[derive(Clone, Copy)]
+pub(super) struct Area {
+    pub(super) left: f64,
+    pub(super) top: f64,
+    pub(super) width: f64,
+    pub(super) height: f64,
+}
 
 /// The pieces of a line that lie inside.
 pub(super) fn clip(points: &[Point], area: Area) -> Vec<Vec<Point>> {

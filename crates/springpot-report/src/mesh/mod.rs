@@ -13,8 +13,8 @@ use std::fs::{self, File};
 use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 
-pub(crate) use sink::Part;
 use sink::Sink;
+pub(crate) use sink::{Part, Surface};
 
 /// Largest file that is read, bytes.
 pub(crate) const LARGEST: u64 = 64 << 20;

@@ -1,7 +1,6 @@
 //! Where triangles go: one surface a colour, equal corners as one vertex.
 
 use super::{FARTHEST, MOST_TRIANGLES, Unread};
-use crate::surface::Surface;
 use std::collections::HashMap;
 
 /// Most colours of a file; what has others has none.
@@ -9,6 +8,13 @@ const MOST_COLORS: usize = 256;
 
 /// Red, green and blue as screens have them.
 pub(crate) type Rgb = [u8; 3];
+
+/// Vertices and triangles.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Surface {
+    pub(crate) vertices: Vec<[f32; 3]>,
+    pub(crate) triangles: Vec<[u32; 3]>,
+}
 
 /// What has one colour in a file.
 #[derive(Debug, Clone, Default)]

@@ -1,8 +1,8 @@
 //! Triangles of mesh files as a page holds them.
 
-use crate::mesh::{MeshFile, Part};
+use crate::mesh::{MeshFile, Part, Surface};
 use crate::scene::{Scene, Shape, Visual};
-use crate::surface::{self, Surface};
+use crate::surface;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use serde::Serialize;

@@ -1,7 +1,7 @@
 //! The signs of elements: springs, dashpots, springpots, and what is made of them.
 
 use super::ElementSign;
-use super::symbols::{normal, offset};
+use super::plane::{normal, offset};
 use crate::draw::Point;
 use std::f64::consts::TAU;
 

@@ -2,6 +2,7 @@
 
 mod element;
 mod labels;
+mod plane;
 mod sketch;
 mod symbols;
 mod view;

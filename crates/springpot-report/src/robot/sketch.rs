@@ -2,7 +2,8 @@
 
 use super::element;
 use super::labels::{Frame, Request};
-use super::symbols::{ARM, BODY, ELEMENT, JOINT, RING, SLIDE, SPIRAL, Sheet, direction};
+use super::plane::direction;
+use super::symbols::{ARM, BODY, ELEMENT, JOINT, RING, SLIDE, SPIRAL, Sheet};
 use super::view::View;
 use super::{ElementMark, ElementShape, ElementSign, JointKind, JointMark, RobotDrawing, WORLD};
 use crate::draw::{Align, Color, Font, INK, Point, Scene, Stroke, Text, wrap_evenly};

@@ -3,6 +3,7 @@
 use super::ElementSign;
 use super::element::{self, Drawn};
 use super::labels::{Frame, Obstacles};
+use super::plane::{direction, normal, offset};
 use crate::draw::{Color, INK, Outline, PAPER, Point, Scene, Stroke};
 use std::f64::consts::{SQRT_2, TAU};
 
@@ -28,21 +29,6 @@ const DASH_DOT: &[f64] = &[8.0, 2.5, 1.5, 2.5];
 pub(super) struct Sheet {
     pub(super) scene: Scene,
     pub(super) obstacles: Obstacles,
-}
-
-pub(super) fn offset(p: Point, s: f64, d: Point) -> Point {
-    [p[0] + s * d[0], p[1] + s * d[1]]
-}
-
-/// Direction from a to b and their distance; to the right for equal points.
-pub(super) fn direction(a: Point, b: Point) -> (Point, f64) {
-    let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
-    let length = dx.hypot(dy);
-    if length > 1e-9 { ([dx / length, dy / length], length) } else { ([1.0, 0.0], 0.0) }
-}
-
-pub(super) fn normal([x, y]: Point) -> Point {
-    [-y, x]
 }
 
 impl Sheet {

@@ -1,35 +1,22 @@
 //! The scenario's figures from the columns that the run kept, figures of finished runs from their files, and figures of curves from elsewhere.
 //!
-//! A kind of figure is a file: what it wants of the rows, and how it is drawn.
+//! A kind of figure is a file: how it is drawn. What it wants of the rows is laid out with the columns.
 
 mod curves;
 mod later;
-mod look;
-mod panels;
 mod robot;
 mod source;
 mod summary;
 
 pub use later::{AskedFigure, LaterFigure, NotDrawn};
-pub(crate) use look::DrawnLook;
-pub(crate) use panels::{Curves, DrawnCase, FigureColumn, MeasuredPoints};
 
-use crate::sweep::{FigureData, Layout, Outcome, Wanted};
+use crate::sweep::{Layout, Outcome};
 use crate::table::folder::Folder;
 use source::Source;
 use springpot::system::System;
 use springpot_report::Rendered;
-use springpot_scenario::{Cases, FigureFormat, FigureKind, FigurePlan, Plan, Refusals};
+use springpot_scenario::{Cases, FigureFormat, FigureKind, Plan};
 use std::io;
-
-/// What a figure wants of the rows.
-pub(crate) fn data(cases: &Cases, figure: &FigurePlan, wanted: &mut Wanted) -> Result<FigureData, Refusals> {
-    match &figure.kind {
-        FigureKind::Curves { x, y } => curves::data(cases, figure, wanted, x, y),
-        FigureKind::Summary { x, y } => summary::data(cases, figure, wanted, x, y),
-        FigureKind::Robot => Ok(FigureData::default()),
-    }
-}
 
 /// What a figure is called in a format.
 pub(crate) fn file_name(figure: &str, format: FigureFormat) -> String {

@@ -1,7 +1,7 @@
 //! The robot at t = 0 as a mechanism sketch.
 
-use super::look::millimetres;
 use super::source::Source;
+use crate::panels::millimetres;
 use crate::scene::{ground, sign_of};
 use springpot::equations::Pose;
 use springpot::model::{Anchor, JointKind, JointPart, Move, Parent};

@@ -1,7 +1,7 @@
 //! What figures are drawn from.
 
-use super::panels::{Curves, DrawnCase, FigureColumn};
 use crate::labels;
+use crate::panels::{Curves, DrawnCase, FigureColumn};
 use crate::sweep::{CaseResult, FigureCurve, FigureData, KeptCurve, Outcome};
 use springpot::system::System;
 use springpot_report::Plot;

@@ -4,6 +4,7 @@
 //! determine. [`Problem`] has residuals and their derivatives for other minimisers.
 
 mod ahead;
+mod compared;
 mod figures;
 mod files;
 mod moduli;

@@ -1,6 +1,6 @@
 //! Moduli, relaxation and creep of one element, and their derivatives.
 
-use super::predicted::{Predicted, Record};
+use super::compared::{Predicted, Record};
 use num_complex::Complex64;
 use springpot::identification::Failed;
 use springpot::law::heat::INPUT as TEMPERATURE;

@@ -1,6 +1,6 @@
 //! What a fit found.
 
-use super::predicted::Predicted;
+use super::compared::Predicted;
 use super::problem::Problem;
 use springpot::identification::{Fit, Status as Ended};
 use springpot_scenario::Fitting;

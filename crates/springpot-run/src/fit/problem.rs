@@ -1,6 +1,6 @@
 //! The residuals of all records, and their derivatives.
 
-use super::predicted::{Predicted, Record};
+use super::compared::{Predicted, Record};
 use springpot::identification::{self, Failed, Loss, Parameter, Rows, Series};
 use springpot_scenario::{DataKind, Fitting};
 

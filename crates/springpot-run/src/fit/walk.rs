@@ -1,6 +1,6 @@
 //! A run looked at where rows were measured.
 
-use super::predicted::Predicted;
+use super::compared::Predicted;
 use springpot::Simulation;
 use springpot::identification::Failed;
 use springpot::observe::{Quantity, Snapshot};

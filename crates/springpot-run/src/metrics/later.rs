@@ -1,8 +1,8 @@
 //! Metrics of a run that has ended, from its results.
 
+use super::series::is_within;
 use super::{COLUMNS, push_line, value};
 use crate::record::Record;
-use crate::sweep::is_within;
 use crate::table::disk::Disk;
 use crate::table::push_text;
 use crate::table::stored::Stored;

@@ -12,6 +12,7 @@ mod swings;
 
 pub use later::{LaterError, Recomputed, Source};
 pub use series::Series;
+pub(crate) use series::is_within;
 
 use crate::table::{push_number, push_text};
 use springpot::table::Column;

@@ -1,7 +1,6 @@
 //! The rows that a metric is taken from.
 
 use super::slopes::Slopes;
-use crate::sweep::is_within;
 use springpot_scenario::{Band, Metric};
 
 /// Rows of a case with t in a window.
@@ -79,6 +78,12 @@ impl Series {
 pub(super) fn rows_of(t: &[f64], values: &[f64], window: Option<[f64; 2]>) -> Vec<usize> {
     let is_one = |k: &usize| values[*k].is_finite() && window.is_none_or(|window| is_within(window, t[*k]));
     (0..t.len().min(values.len())).filter(is_one).collect()
+}
+
+/// Whether a time is in a window, its rounding aside.
+pub(crate) fn is_within([from, to]: [f64; 2], t: f64) -> bool {
+    let slack = 1e-9 * (to - from);
+    t >= from - slack && t <= to + slack
 }
 
 #[cfg(test)]

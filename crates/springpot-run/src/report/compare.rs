@@ -2,9 +2,9 @@
 
 use super::curves::{self, Asked, Read};
 use super::{facts, standard, warnings, written};
-use crate::figures::DrawnCase;
 use crate::labels;
 use crate::numbers::{brief, rough, short};
+use crate::panels::DrawnCase;
 use crate::record::Listed;
 use crate::results::{Results, ResultsError};
 use crate::sweep::KeptCurve;

@@ -1,7 +1,7 @@
 //! Pictures of columns that a report draws itself.
 
 use super::swept;
-use crate::figures::{Curves, DrawnCase, DrawnLook, FigureColumn};
+use crate::panels::{Curves, DrawnCase, DrawnLook, FigureColumn};
 use crate::results::{Results, ResultsError};
 use crate::sweep::KeptCurve;
 use springpot_report::page::Figure;

@@ -1,9 +1,7 @@
 //! What one case keeps for figures and metrics.
 
-use super::Layout;
-use super::curve::KeptCurve;
+use super::layout::{KeptCurve, Layout, Window};
 use super::metrics::{CaseMetrics, Watched};
-use super::wanted::Window;
 use crate::table::Totals;
 use springpot::sensitivity::Tape;
 use springpot_scenario::Plan;

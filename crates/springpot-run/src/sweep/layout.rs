@@ -1,12 +1,20 @@
 //! Which columns are written, and which are kept in memory for figures and metrics.
 
-use super::curve::most_points;
-use super::derivatives::Differentiated;
-use super::wanted::{FigureData, Total, Wanted, WantedCurve, WantedMetric, WantedTotal};
-use crate::figures;
+mod curve;
+mod figures;
+mod ranked;
+mod wanted;
+
+pub use curve::{KeptCurve, MAX_CURVES_IN_ALL, most_points};
+pub use ranked::Ranked;
+pub use wanted::{Abscissa, FigureCurve, FigureData, FigureTotal, LeftOut, MAX_CURVES, Total};
+pub(super) use wanted::{WantedMetric, Window};
+
+use ranked::Differentiated;
 use springpot::observe::Quantity;
 use springpot::table::Column;
 use springpot_scenario::{Cases, Plan, Refusals, SensitivityPlan};
+use wanted::{Wanted, WantedCurve, WantedTotal};
 
 /// The columns of a sweep.
 #[derive(Debug, Clone)]

@@ -1,8 +1,7 @@
 //! The metrics of a case: its columns while it runs, its lines at the end.
 
-use super::Layout;
 use super::derivatives::{CaseDerivatives, Measured};
-use super::wanted::WantedMetric;
+use super::layout::{Layout, WantedMetric};
 use crate::metrics::{push_line, shares, value};
 use serde::{Deserialize, Serialize};
 use springpot::sensitivity::{Share, Tape};

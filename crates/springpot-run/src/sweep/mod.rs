@@ -2,7 +2,6 @@
 
 mod case;
 mod checkpoint;
-mod curve;
 mod derivatives;
 mod events;
 mod kept;
@@ -15,23 +14,21 @@ mod record;
 mod shard;
 mod simulate;
 mod taken;
-mod wanted;
 
 pub use case::CaseResult;
 pub use checkpoint::{CheckpointError, Checkpoints, MergeError, Origin, Shards, Unfinished};
-pub use curve::{KeptCurve, MAX_CURVES_IN_ALL, most_points};
-pub use derivatives::{CaseDerivatives, Ranked};
+pub use derivatives::CaseDerivatives;
 pub use events::Happened;
 pub use kept::CaseCurves;
-pub use layout::Layout;
+pub use layout::{
+    Abscissa, FigureCurve, FigureData, FigureTotal, KeptCurve, Layout, LeftOut, MAX_CURVES, MAX_CURVES_IN_ALL, Ranked,
+    Total, most_points,
+};
 pub use limits::{CasesPassing, LimitTally};
 pub use metrics::CaseMetrics;
 pub use parcel::{Parcel, ParcelError, Source};
 pub(crate) use record::begun;
 pub use shard::Shard;
-pub(crate) use wanted::is_within;
-pub use wanted::{Abscissa, FigureCurve, FigureData, FigureTotal, LeftOut, MAX_CURVES, Total};
-pub(crate) use wanted::{Summed, Wanted};
 
 use crate::metrics::{COLUMNS as METRIC_COLUMNS, GRADIENT_COLUMNS};
 use crate::table::disk::DiskFile;

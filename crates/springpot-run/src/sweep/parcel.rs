@@ -1,12 +1,13 @@
 //! A case that has come to its end, whole: what another process hands over, and what a run in memory keeps.
 
-use super::checkpoint::{CaseDone, Stretch, Written};
+use super::checkpoint::{CaseDone, CheckpointError, Shards, Stretch, Written};
 use super::layout::Layout;
 use super::metrics::CaseMetrics;
 use super::simulate::{Ran, Resumed, Sink, simulate};
 use super::taken::{Taken, push_row};
 use super::{Progress, events::Happened};
 use crate::table::Statistics;
+use crate::table::disk::Disk;
 use crate::table::sealed::{CHECKPOINT, SealError, open, seal};
 use crate::trouble::Trouble;
 use serde::{Deserialize, Serialize};
@@ -15,6 +16,7 @@ use springpot::sensitivity::Tape;
 use springpot::system::{Stop, System};
 use springpot_scenario::{Cases, Plan};
 use std::io;
+use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -52,6 +54,17 @@ pub trait Source: Send + Sync {
     /// Wall time that was spent elsewhere.
     fn wall(&self) -> Duration {
         Duration::ZERO
+    }
+}
+
+impl Source for Shards {
+    fn case(&self, index: usize) -> io::Result<Option<Arc<Parcel>>> {
+        let ended = self.ended(index).map_err(io::Error::other)?;
+        Ok(ended.map(|(done, rows, kept)| Arc::new(Parcel::of_text(done, rows, kept))))
+    }
+
+    fn wall(&self) -> Duration {
+        self.wall_of_parts()
     }
 }
 
@@ -98,6 +111,19 @@ impl Parcel {
     /// A case whose rows are known as text.
     pub(super) fn of_text(done: CaseDone, rows: Vec<u8>, kept: Vec<f64>) -> Self {
         Self { done, rows: ParcelRows::Text(rows), kept }
+    }
+
+    /// The cases that a run under way has brought to their end, up to the first that has not ended, with their rows as numbers.
+    ///
+    /// # Errors
+    /// As [`Unfinished::read`](super::Unfinished::read); damaged rows.
+    pub fn under_way(results: &Path, disk: &Disk, holder: &str, layout: &Layout) -> Result<Vec<Self>, CheckpointError> {
+        let (swept, columns) = (layout.swept(), layout.written().len() - layout.swept());
+        let cases = Shards::under_way(results, disk, holder, layout)?.into_iter().map(|(done, rows, kept)| {
+            let numbers = Self::of_text(done, rows, kept).with_numbers(swept, columns);
+            numbers.map_err(|_| CheckpointError::Rows(results.to_owned()))
+        });
+        cases.collect()
     }
 
     /// Bytes that hold every number to the bit.

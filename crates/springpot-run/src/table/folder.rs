@@ -11,6 +11,7 @@ pub(crate) use lock::is_held;
 pub(crate) use owned::{
     CASE, EVENTS, GRADIENT, HEAD, JOURNAL, METRICS, PART, RANKING, RUNNING, UNFINISHED, checkpoint_folder,
 };
+pub use owned::{COMPARISON_PAGE, REPORT_PAGE, VIEW_PAGE};
 
 use super::disk::{Disk, DiskFile, Entry};
 use super::format::{self, Format};

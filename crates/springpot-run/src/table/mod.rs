@@ -7,6 +7,7 @@ mod npz;
 pub mod number;
 pub mod ordered;
 mod parquet;
+mod rows;
 pub(crate) mod sealed;
 pub mod statistics;
 pub(crate) mod stored;

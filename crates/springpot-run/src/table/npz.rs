@@ -3,7 +3,7 @@
 //! Formats: numpy.lib.format, version 1.0, of the NumPy manual; APPNOTE.TXT 6.3.10 of PKWARE, sections 4.3 and 4.5.3
 //! (zip64).
 
-use super::format::{Kind, Rows, number};
+use super::rows::{Kind, Rows, number};
 use std::io::{self, Seek, SeekFrom, Write};
 
 /// Bytes that are gathered before they are written to the arrays.

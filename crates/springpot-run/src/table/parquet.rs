@@ -4,7 +4,7 @@
 //! protocol. Units and meanings of the columns stand under the key `springpot.columns` of the file's metadata, as in
 //! run.json.
 
-use super::format::{Kind, Rows, number};
+use super::rows::{Kind, Rows, number};
 use std::io::{self, Write};
 
 const MAGIC: &[u8; 4] = b"PAR1";

@@ -4,16 +4,17 @@ use super::material::{self, Material};
 use super::plan::{DataPlan, FitParameter, FitPlan, Role};
 use super::record::{self, Of, Record};
 use super::{Case, Fitting, settings};
+use crate::cases::{read_plan, root};
 use crate::changes::path::{self, Step};
 use crate::plan::Plan;
+use crate::plan::sensitivity::ParameterPlan;
 use crate::reader::files::{CsvCache, UrdfCache};
 use crate::reader::{Context, Field, Read, Refused, Table, all};
 use crate::robot;
 use crate::scenario::Scenario;
-use crate::scenario::cases::{read_plan, root};
 use crate::scenario::overrides;
 use crate::scenario::root::SCENARIO;
-use crate::sensitivity::{self, Asked, By, ParameterPlan};
+use crate::sensitivity::{self, Asked, By};
 use crate::text::document::{Node, shorten};
 use crate::text::refusal::{RefusalKind, Refusals, Remark};
 use springpot::identification::{Parameter, Scale};
@@ -219,7 +220,7 @@ fn one(ctx: &Context<'_>, root: &Table<'_>, k: usize, global: &[By]) -> Read<(Ga
     let read = match written.table.get("element") {
         _ if written.kind == crate::keys::RUN => of_run(&inner, &document, &written, asked.clone()),
         Some(field) => {
-            crate::scenario::cases::root(&inner, &document).and_then(|root| of_element(&root, &field, &written, &asked))
+            crate::cases::root(&inner, &document).and_then(|root| of_element(&root, &field, &written, &asked))
         }
         None => return Err(written.table.missing("element", "element = \"NAME\"")),
     };
@@ -328,7 +329,7 @@ fn is_rotation(root: &Table<'_>, steps: &[Step]) -> bool {
             // What is wrong with the robot is no matter here.
             let ctx =
                 Context::new(root.ctx.catalog, root.ctx.folder, root.ctx.tables, root.ctx.robots).of_whole(&SCENARIO);
-            let read = crate::scenario::cases::root(&ctx, root.node).and_then(|root| robot::read(&root));
+            let read = crate::cases::root(&ctx, root.node).and_then(|root| robot::read(&root));
             read.is_ok_and(|robot| {
                 let model = robot.model();
                 let at = model.joint_names().iter().position(|name| name == joint);

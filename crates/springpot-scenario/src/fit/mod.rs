@@ -13,12 +13,12 @@ pub use material::{MaterialAt, Moved};
 pub use plan::{DataColumn, DataKind, DataPlan, FitParameter, FitPlan, FitSettings, Intervals, PastOfStroke, Role};
 
 use self::material::Material;
+use crate::cases::{read_plan, root};
 use crate::changes::path::Step;
 use crate::plan::Plan;
 use crate::reader::Context;
 use crate::reader::files::{CsvCache, UrdfCache};
 use crate::scenario::Scenario;
-use crate::scenario::cases::{read_plan, root};
 use crate::scenario::root::SCENARIO;
 use crate::sensitivity::{self, Asked, By};
 use crate::text::document::{Node, Value};

@@ -1,6 +1,5 @@
-//! A whole scenario: as it is written, with what the command line says in its place, and the cases that its sweeps make of it.
+//! A whole scenario: as it is written, with what the command line says in its place.
 
-pub(crate) mod cases;
 mod inputs;
 mod lone;
 pub(crate) mod overrides;
@@ -10,7 +9,6 @@ pub(crate) mod root;
 mod schema;
 pub(crate) mod written;
 
-pub use cases::{Cases, SweptValue};
 pub use lone::LoneElement;
 pub use portable::Portable;
 pub use schema::json_schema;

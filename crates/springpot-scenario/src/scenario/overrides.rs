@@ -5,9 +5,9 @@ mod span;
 
 use self::removal::{forget_figures, take_out};
 use super::written::{Override, Scenario};
+use crate::changes::more::{More, OPTION};
 use crate::changes::path::{self, Target};
 use crate::reader::{Context, Read};
-use crate::sensitivity::{More, OPTION};
 use crate::text::document::{self, Entry, MAX_BYTES, Node, Value};
 use crate::text::refusal::{Place, Refusal, RefusalKind, Refusals, SWEEP_FORM, SWEEP_OPTION, Source};
 use std::ops::Range;

@@ -1,6 +1,6 @@
 //! A scenario as it is written.
 
-use crate::sensitivity::More;
+use crate::changes::more::More;
 use crate::text::document::{MAX_BYTES, Node, Value};
 use crate::text::mistaken;
 use crate::text::refusal::{Place, Refusal, RefusalKind, Refusals, Source};

@@ -1,5 +1,6 @@
 //! What the tables say before anything of the case is known.
 
+use crate::changes::more::More;
 use crate::changes::path::{self, Target};
 use crate::changes::sweep::Axis;
 use crate::figures::{ColumnGlob, columns};
@@ -10,16 +11,6 @@ use crate::text::document::{Node, Value, shorten};
 use crate::text::names;
 use crate::text::refusal::{Place, RefusalKind};
 use std::collections::HashMap;
-
-/// What the option is called that asks for more of them.
-pub(crate) const OPTION: &str = "--sensitivity";
-
-/// A path, or the name of a parameter, that the command line asks for.
-#[derive(Debug, Clone)]
-pub(crate) struct More {
-    pub(crate) written: String,
-    pub(crate) place: Place,
-}
 
 /// By what is differentiated, and what.
 #[derive(Debug, Clone, Default)]

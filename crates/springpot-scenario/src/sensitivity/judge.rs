@@ -5,12 +5,12 @@ use super::constants;
 use super::extended::{Extended, Virtual};
 use super::gather::{Gather, Scene, Slope};
 use super::mark::values;
-use super::plan::{ParameterPlan, SensitivityPlan};
 use super::rows;
 use crate::changes::path::{Step, Target};
 use crate::figures::read_columns;
 use crate::keys::{PARAMETER, PRIOR};
 use crate::plan::Plan;
+use crate::plan::sensitivity::{ParameterPlan, SensitivityPlan, over};
 use crate::reader::{Field, Read, Refused, Table, all};
 use crate::text::document::{Node, shorten};
 use crate::text::glob::matches;
@@ -381,17 +381,6 @@ fn by_parameters(
         let told = Column::new(name, over(&column.unit, &parameter.unit), meaning);
         known.extend(quantity.map(|&of| DerivativeColumn { of, by, column: told.clone() }));
         columns.push(told);
-    }
-}
-
-/// The unit of a quotient.
-pub(super) fn over(unit: &str, by: &str) -> String {
-    match (unit, by) {
-        (unit, "" | "1") => unit.to_owned(),
-        ("" | "1", by) if by.contains(['*', '/']) => format!("1/({by})"),
-        ("" | "1", by) => format!("1/{by}"),
-        (unit, by) if by.contains(['*', '/']) => format!("{unit}/({by})"),
-        (unit, by) => format!("{unit}/{by}"),
     }
 }
 

@@ -7,12 +7,10 @@ mod extended;
 mod gather;
 mod judge;
 mod mark;
-pub(crate) mod plan;
 mod rows;
 
-pub(crate) use asked::{Asked, By, More, OPTION, apart, blocks, read};
+pub(crate) use asked::{Asked, By, apart, blocks, read};
 pub(crate) use constants::{followers, slopes};
 pub(crate) use gather::Slope;
 pub(crate) use judge::{block_of, judge, refuse_unknown};
 pub(crate) use mark::mark;
-pub(crate) use plan::ParameterPlan;

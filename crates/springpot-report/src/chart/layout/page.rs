@@ -4,7 +4,8 @@ use super::{
     BORDER, LABEL_LINE, LABEL_SIZE, LEGEND_GAP, LEGEND_ROW, Layout, PANEL_TITLE_LINE, PANEL_TITLE_SIZE, Place, Row,
     Settled, TITLE_LINE, TITLE_SIZE,
 };
-use crate::chart::axes::{self, Area, Axes, Line, PAD, Ruler, TICK};
+use crate::chart::axes::{self, Axes, Line, PAD, Ruler, TICK};
+use crate::chart::clip::Area;
 use crate::chart::data::Range;
 use crate::chart::{Curve, Scale, decimate};
 use crate::draw::{Align, Scene, Stroke, Text};

@@ -1,9 +1,9 @@
 //! Which columns and cases are drawn, and the curves that they make.
 
-use super::super::{Curves, DrawnCase, DrawnLook, FigureColumn, MeasuredPoints};
 use super::table::{self, Reading, Sweep, Table};
 use super::{AskedFigure, NotDrawn, look};
 use crate::labels;
+use crate::panels::{Curves, DrawnCase, DrawnLook, FigureColumn, MeasuredPoints};
 use crate::sweep::{KeptCurve, MAX_CURVES, most_points};
 use crate::table::matches;
 use springpot::table::Column;

@@ -1,8 +1,7 @@
 //! The look of a figure from texts, as the command and Python give them.
 
-use super::super::FigureColumn;
-use super::super::look::{DrawnLook, Misfit};
 use super::NotDrawn;
+use crate::panels::{DrawnLook, FigureColumn, Misfit};
 use springpot_scenario::{
     ColumnGlob, FIGURE_SIDES, FigureLabel, LOOK_OPTIONS, Look, LookOption, Place, RangeEnd, Said, Source, Takes,
     suggest, units,

@@ -1,10 +1,9 @@
 //! Statistics of columns, and metrics, over a swept parameter: what `kind = "summary"` of a figure draws, from the files of results.
 
-use super::super::FigureColumn;
-use super::super::summary::{CasesOver, swept_numbers};
 use super::curves::{Sweeps, Units, chosen, drawn as column, found, found_labels, label, named, source, units};
 use super::table::{self, Reading, Sweep, Table};
 use super::{AskedFigure, NotDrawn, look};
+use crate::panels::{CasesOver, FigureColumn, swept_numbers};
 use crate::table::Totals;
 use springpot::table::Column;
 use springpot_report::Plot;

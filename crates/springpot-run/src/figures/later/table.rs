@@ -1,8 +1,8 @@
 //! The rows of a run, and what run.json says of them.
 
 use super::NotDrawn;
+use crate::metrics::is_within;
 use crate::results::of_other_version;
-use crate::sweep::is_within;
 use crate::table::{cut_field, matches, push_number};
 use crate::warning::Warn;
 use ::csv::{ByteRecord, Reader};

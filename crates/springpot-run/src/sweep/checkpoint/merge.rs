@@ -6,7 +6,6 @@ use super::record::{CaseDone, Head, Origin, digest, value};
 use super::rows::{copy, survey};
 use super::{Earlier, Ended, Unfinished, file_of};
 use crate::sweep::layout::Layout;
-use crate::sweep::parcel::{Parcel, Source};
 use crate::table::disk::Disk;
 use crate::table::folder::{Folder, FolderError, JOURNAL, checkpoint_folder};
 use crate::table::sealed;
@@ -16,8 +15,10 @@ use std::collections::BTreeMap;
 use std::io::{self, Seek as _, SeekFrom};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::time::Duration;
+
+/// A case of a part: its end, the text of its rows, and its values that are kept for figures.
+pub(in crate::sweep) type EndedCase = (CaseDone, Vec<u8>, Vec<f64>);
 
 /// Why the parts of a run cannot be put together.
 #[derive(Debug, thiserror::Error)]
@@ -130,23 +131,35 @@ impl Shards {
         &self.parts[0].head.origin
     }
 
-    /// The cases that a run under way has brought to their end, up to the first that has not ended, with their rows as numbers.
+    /// The cases that a run under way has brought to their end, up to the first that has not ended.
     ///
     /// # Errors
-    /// As [`Unfinished::read`]; damaged rows.
-    pub fn ended(results: &Path, disk: &Disk, holder: &str, layout: &Layout) -> Result<Vec<Parcel>, CheckpointError> {
+    /// As [`Unfinished::read`].
+    pub(in crate::sweep) fn under_way(
+        results: &Path,
+        disk: &Disk,
+        holder: &str,
+        layout: &Layout,
+    ) -> Result<Vec<EndedCase>, CheckpointError> {
         let Unfinished { folder, head } = Unfinished::read(results, disk.clone(), holder)?;
         let start = head.origin.cases(head.cases).start;
         let (done, begins, wall) = Default::default();
         let mut part = Part { folder, head, done, begins, rows: None, wall };
         let first = part.look(layout, start)?;
-        let (swept, columns) = (layout.swept(), layout.written().len() - layout.swept());
-        let cases = (start..first).map(|case| {
-            let width = layout.kept(case).map_or(0, <[usize]>::len);
-            let numbers = part.parcel(disk, case, width)?.with_numbers(swept, columns);
-            numbers.map_err(|_| CheckpointError::Rows(results.to_owned()))
-        });
-        cases.collect()
+        let width = |case: usize| layout.kept(case).map_or(0, <[usize]>::len);
+        (start..first).map(|case| part.case(disk, case, width(case))).collect()
+    }
+
+    /// A case, where a part has it.
+    pub(in crate::sweep) fn ended(&self, index: usize) -> Result<Option<EndedCase>, CheckpointError> {
+        let Some(&part) = self.of_case.get(&index) else { return Ok(None) };
+        let width = self.widths.get(index).copied().unwrap_or(0);
+        self.parts[part].case(&self.disk, index, width).map(Some)
+    }
+
+    /// Wall time that was spent on the parts.
+    pub(in crate::sweep) fn wall_of_parts(&self) -> Duration {
+        self.parts.iter().map(|part| part.wall).sum()
     }
 
     /// The folders of the parts.
@@ -223,7 +236,7 @@ impl Part {
         Ok(sound.first)
     }
 
-    fn parcel(&self, disk: &Disk, case: usize, width: usize) -> Result<Parcel, CheckpointError> {
+    fn case(&self, disk: &Disk, case: usize, width: usize) -> Result<EndedCase, CheckpointError> {
         let (results, ended) = (self.folder.path(), self.done[&case]);
         let journal = checkpoint_folder(results).join(JOURNAL);
         let record = sealed::record(disk, &journal, ended.at).and_then(|bytes| value::<CaseDone>(&bytes));
@@ -244,18 +257,6 @@ impl Part {
         }
         let path = file_of(results, case, ".kept");
         read_kept(disk, &path, ended.kept, width, &mut |values| kept.extend_from_slice(values)).map_err(at(&path))?;
-        Ok(Parcel::of_text(done, rows, kept))
-    }
-}
-
-impl Source for Shards {
-    fn case(&self, index: usize) -> io::Result<Option<Arc<Parcel>>> {
-        let Some(&part) = self.of_case.get(&index) else { return Ok(None) };
-        let width = self.widths.get(index).copied().unwrap_or(0);
-        self.parts[part].parcel(&self.disk, index, width).map(|parcel| Some(Arc::new(parcel))).map_err(io::Error::other)
-    }
-
-    fn wall(&self) -> Duration {
-        self.parts.iter().map(|part| part.wall).sum()
+        Ok((done, rows, kept))
     }
 }

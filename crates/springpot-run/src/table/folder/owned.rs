@@ -1,12 +1,18 @@
 //! What in a folder of results was written by a run, and by which.
 
-use crate::results::{COMPARISON_PAGE, REPORT_PAGE, VIEW_PAGE};
 use crate::table::disk::{Disk, Entry};
 use crate::table::sealed;
 use serde::Deserialize;
 use springpot_report::page::MARK;
 use std::io::{self, Read as _, Write as _};
 use std::path::{Component, Path};
+
+/// What pages are called among the results that they show.
+pub const VIEW_PAGE: &str = "view.html";
+/// As [`VIEW_PAGE`], of reports.
+pub const REPORT_PAGE: &str = "report.html";
+/// As [`VIEW_PAGE`], of what two results have to do with each other.
+pub const COMPARISON_PAGE: &str = "comparison.html";
 
 /// The rows while they are written, and at the end.
 pub(crate) const PART: &str = "results.csv.part";

@@ -2,8 +2,8 @@
 
 use super::{Take, Wanted, damaged};
 use crate::table::disk::{Disk, DiskFile};
-use crate::table::format::number;
 use crate::table::quoted;
+use crate::table::rows::number;
 use csv::{ByteRecord, Reader};
 use std::io::{self, BufReader};
 use std::path::Path;

@@ -1,7 +1,8 @@
 //! What figures want of the rows: their curves, and the columns that those are made of.
 
 use super::curve::MAX_CURVES_IN_ALL;
-use crate::figures::{DrawnLook, FigureColumn, MeasuredPoints};
+use crate::metrics::is_within;
+use crate::panels::{DrawnLook, FigureColumn, MeasuredPoints};
 use crate::table::matches;
 use springpot::table::Column;
 use springpot_scenario::units::Unit;
@@ -38,7 +39,7 @@ pub struct FigureData {
 /// One curve of every case that a figure draws.
 #[derive(Debug, Clone)]
 pub struct FigureCurve {
-    /// Its index in [`super::CaseResult`].
+    /// Its index in [`crate::sweep::CaseResult`].
     pub index: usize,
     /// The abscissa.
     pub x: FigureColumn,
@@ -60,7 +61,7 @@ pub struct FigureTotal {
 pub enum Total {
     /// A statistic of a column.
     Statistic {
-        /// Its index in [`super::CaseCurves`].
+        /// Its index in [`crate::sweep::CaseCurves`].
         index: usize,
         /// Which it is.
         statistic: Statistic,
@@ -91,52 +92,46 @@ pub struct Abscissa {
 
 /// Rows with t in between.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Window {
+pub(in crate::sweep) struct Window {
     /// Where t stands among the kept columns.
-    pub(super) t: usize,
+    pub(in crate::sweep) t: usize,
     from: f64,
     to: f64,
 }
 
 impl Window {
     /// Whether a row belongs to it, the rounding of its time aside.
-    pub(super) fn holds(&self, t: f64) -> bool {
+    pub(in crate::sweep) fn holds(&self, t: f64) -> bool {
         is_within([self.from, self.to], t)
     }
 }
 
-/// Whether a time is in a window, its rounding aside.
-pub(crate) fn is_within([from, to]: [f64; 2], t: f64) -> bool {
-    let slack = 1e-9 * (to - from);
-    t >= from - slack && t <= to + slack
-}
-
 /// A curve of a case: places of x and y among the kept columns.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct WantedCurve {
-    pub(super) places: [usize; 2],
-    pub(super) window: Option<Window>,
+pub(in crate::sweep) struct WantedCurve {
+    pub(in crate::sweep) places: [usize; 2],
+    pub(in crate::sweep) window: Option<Window>,
     /// Whether the axes are logarithmic.
-    pub(super) is_log: [bool; 2],
+    pub(in crate::sweep) is_log: [bool; 2],
 }
 
 /// Statistics of a column, by its place among the kept ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct WantedTotal {
-    pub(super) place: usize,
-    pub(super) window: Option<Window>,
+pub(in crate::sweep) struct WantedTotal {
+    pub(in crate::sweep) place: usize,
+    pub(in crate::sweep) window: Option<Window>,
 }
 
 /// A metric, where t and its column stand among the kept ones, and what the column is.
 #[derive(Debug, Clone)]
-pub(super) struct WantedMetric {
+pub(in crate::sweep) struct WantedMetric {
     /// Of the first case.
-    pub(super) first: Metric,
-    pub(super) t: usize,
-    pub(super) place: usize,
-    pub(super) column: Column,
+    pub(in crate::sweep) first: Metric,
+    pub(in crate::sweep) t: usize,
+    pub(in crate::sweep) place: usize,
+    pub(in crate::sweep) column: Column,
     /// Where the derivatives of its column by each parameter are kept, where they are known.
-    pub(super) changes: Option<Vec<usize>>,
+    pub(in crate::sweep) changes: Option<Vec<usize>>,
 }
 
 /// Why a figure is not drawn.
@@ -180,7 +175,7 @@ pub(crate) struct Wanted {
 
 impl Wanted {
     /// Of a run with these columns: nothing yet.
-    pub(super) fn new(columns: Vec<Column>) -> Self {
+    pub(in crate::sweep) fn new(columns: Vec<Column>) -> Self {
         Self { columns, kept: Vec::new(), curves: Vec::new(), totals: Vec::new(), count: 0 }
     }
 
@@ -190,17 +185,17 @@ impl Wanted {
     }
 
     /// Indices in a row of the columns that are kept.
-    pub(super) fn kept(&self) -> &[usize] {
+    pub(in crate::sweep) fn kept(&self) -> &[usize] {
         &self.kept
     }
 
     /// A curve.
-    pub(super) fn curve(&self, index: usize) -> WantedCurve {
+    pub(in crate::sweep) fn curve(&self, index: usize) -> WantedCurve {
         self.curves[index]
     }
 
     /// Statistics of a column.
-    pub(super) fn total(&self, index: usize) -> WantedTotal {
+    pub(in crate::sweep) fn total(&self, index: usize) -> WantedTotal {
         self.totals[index]
     }
 
@@ -215,7 +210,7 @@ impl Wanted {
     ///
     /// # Errors
     /// There is no such column.
-    pub(super) fn metric(&mut self, plan: &MetricPlan) -> Result<WantedMetric, Refusals> {
+    pub(in crate::sweep) fn metric(&mut self, plan: &MetricPlan) -> Result<WantedMetric, Refusals> {
         let found = |name: &str| self.columns.iter().position(|column| column.name == name);
         let (Some(t), Some(at)) = (found("t"), found(&plan.metric.of)) else {
             let message = format!("metric {:?}: this run has no column {:?}", plan.metric.name, plan.metric.of);
@@ -229,7 +224,7 @@ impl Wanted {
     }
 
     /// Keeps a place in a row, whether or not a column of the run stands there.
-    pub(super) fn keep(&mut self, at: usize) -> usize {
+    pub(in crate::sweep) fn keep(&mut self, at: usize) -> usize {
         place(&mut self.kept, at)
     }
 
@@ -376,7 +371,7 @@ impl Wanted {
 
 impl FigureData {
     /// Curves that are kept for it.
-    pub(super) fn count(&self) -> usize {
+    pub(in crate::sweep) fn count(&self) -> usize {
         self.cases.len() * self.curves.len()
     }
 }

@@ -1,6 +1,6 @@
 //! Ranges, scales, size and words of a figure of curves, in the units that it is drawn in.
 
-use super::panels::{FigureColumn, groups};
+use super::column::{FigureColumn, groups};
 use springpot_scenario::units::{self, Unit};
 use springpot_scenario::{FigurePlan, Look, RangeEnd, RefusalKind, Refusals};
 
@@ -17,13 +17,13 @@ pub struct DrawnLook {
 
 /// Why a look does not fit the columns.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Misfit {
+pub(crate) struct Misfit {
     /// The option.
-    pub(super) option: &'static str,
+    pub(crate) option: &'static str,
     /// What is wrong with it.
-    pub(super) message: String,
+    pub(crate) message: String,
     /// What would be right.
-    pub(super) help: String,
+    pub(crate) help: String,
 }
 
 impl DrawnLook {
@@ -31,7 +31,7 @@ impl DrawnLook {
     ///
     /// # Errors
     /// Ranges that do not rise, or are in units of something else; equal lengths of different units.
-    pub(super) fn new(asked: Look, x: &FigureColumn, y: &[FigureColumn]) -> Result<Self, Misfit> {
+    pub(crate) fn new(asked: Look, x: &FigureColumn, y: &[FigureColumn]) -> Result<Self, Misfit> {
         let misfit = |option| move |(message, help)| Misfit { option, message, help };
         let x_range =
             asked.x.range.as_ref().map(|ends| range(ends, x, asked.x.is_log)).transpose().map_err(misfit("x_range"))?;

@@ -1,6 +1,5 @@
 //! By what a run is differentiated, as it is read.
 
-use super::judge::over;
 use crate::keys::{ADJOINT, FORWARD};
 use crate::text::refusal::Place;
 use springpot::identification::{Prior, Scale};
@@ -100,5 +99,16 @@ impl SensitivityPlan {
             self.columns.iter().chain(&self.for_metrics).position(|column| column.name == name)
         };
         self.parameters.iter().map(place).collect()
+    }
+}
+
+/// The unit of a quotient.
+pub(crate) fn over(unit: &str, by: &str) -> String {
+    match (unit, by) {
+        (unit, "" | "1") => unit.to_owned(),
+        ("" | "1", by) if by.contains(['*', '/']) => format!("1/({by})"),
+        ("" | "1", by) => format!("1/{by}"),
+        (unit, by) if by.contains(['*', '/']) => format!("{unit}/({by})"),
+        (unit, by) => format!("{unit}/{by}"),
     }
 }

@@ -1,8 +1,5 @@
 //! The cases of a scenario: the grid of its sweeps, each planned when it is asked for.
 
-use super::overrides;
-use super::root::SCENARIO;
-use super::written::Scenario;
 use crate::changes::path;
 use crate::changes::sweep::{self, Axis};
 use crate::elements;
@@ -22,6 +19,9 @@ use crate::reader::{Context, Read, Table};
 use crate::robot;
 use crate::robot::Robot;
 use crate::robot::described::RobotPlan;
+use crate::scenario::overrides;
+use crate::scenario::root::SCENARIO;
+use crate::scenario::written::Scenario;
 use crate::sensitivity::{self, Asked};
 use crate::text::document::Node;
 use crate::text::refusal::{Place, RefusalKind, Refusals, Remark};
