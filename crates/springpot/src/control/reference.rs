@@ -3,7 +3,7 @@
 use super::controller::Aim;
 use crate::dynamics::Kinematics;
 use crate::model::{Model, Site};
-use crate::motion::gripper_path::PathError;
+use crate::motion::PathError;
 use crate::motion::{JointPath, Trajectory};
 use crate::signal::{Expression, Signal};
 use std::sync::Arc;

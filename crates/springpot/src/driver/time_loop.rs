@@ -13,7 +13,7 @@ use crate::methods::solver::Solver;
 use crate::methods::stepper::{Behind, Target, Trial};
 use crate::observe::{Needs, Snapshot};
 use crate::sensitivity::SensitivityError;
-use crate::signal::agenda::FINEST;
+use crate::signal::watched::FINEST;
 use crate::signal::{self, Agenda};
 use crate::system::Motion;
 use crate::system::definite::Definite;

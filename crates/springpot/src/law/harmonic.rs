@@ -3,8 +3,9 @@
 //! K* = K' + iK'' = (1/πA) ∮ F·(sin φ + i cos φ) dφ over one steady turn, which loses ∮ F dx = π K'' A². What follows from stroke and rate at one time is integrated
 //! between its kinks; what has a state is driven until its turns no longer differ, and where memories decay like a power of the turns, to their limit (Wynn 1956).
 
+use super::leaf::Guard;
 use super::leaf::Leaf;
-use super::network::{Guard, Network};
+use super::network::Network;
 use super::state::{State, StateRef};
 use super::step::{Course, InputValue, Point, Start, Step};
 use crate::collocation::{Nodes, STAGES, quadrature};

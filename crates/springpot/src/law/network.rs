@@ -14,7 +14,7 @@ pub use series::Series;
 
 use super::harmonic::Sine;
 use super::heat::Heat;
-use super::leaf::{Clock, Coefficient, Dashpot, Free, Jenkins, Leaf, Source, Spring, Springpot, When};
+use super::leaf::{Clock, Coefficient, Dashpot, Free, Guard, Holds, Jenkins, Leaf, Source, Spring, Springpot, When};
 use super::past::Recalled;
 use super::rule::RuleError;
 use super::state::{State, StateRef, StateSize};
@@ -70,22 +70,6 @@ pub enum Network {
     Heated(Box<Heated>),
 }
 
-/// A function whose zeros are kinks of a force, at the start and at the nodes of a step.
-pub type Guard = [f64; MAX_NODES + 1];
-
-/// Whether a part of a network carries force: what stands behind it in a series is free where it does not.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Holds {
-    /// It never gives any.
-    Never,
-    /// There are strokes at which it yields to every force.
-    AtTimes,
-    /// The same of a spring that is free at some strokes ([`Leaf::free`]) or of friction, which slides: in a series what is slack is theirs.
-    LetsGo,
-    /// Wherever it is.
-    Always,
-}
-
 impl Network {
     /// Whoever answers for it.
     #[inline]
@@ -109,7 +93,7 @@ impl Network {
     }
 
     /// A leaf that others hold too.
-    pub fn shared<L: Leaf + 'static>(leaf: Arc<L>) -> Self {
+    pub fn shared(leaf: Arc<dyn Leaf>) -> Self {
         Self::Leaf(LeafPart { name: None, leaf })
     }
 

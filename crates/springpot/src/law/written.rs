@@ -1,8 +1,8 @@
 //! Networks as text: `series(spring(k0), parallel(springpot(c, alpha), slow: dashpot(eta)))`.
 
 use super::catalog::{Entry, Param};
-use super::leaf::{Free, LeafBuild, LeafKind, Table};
-use super::network::{Holds, Network};
+use super::leaf::{Free, Holds, Leaf, LeafBuild, LeafKind, Table};
+use super::network::Network;
 use super::rule::RuleError;
 use crate::dual::Dual;
 use crate::fractional::Kind as Derivative;
@@ -79,7 +79,7 @@ enum PartKind {
     /// A leaf from the table of a file, and which.
     Table {
         name: Arc<str>,
-        build: fn(&Arc<Table>) -> Network,
+        build: fn(&Arc<Table>) -> Arc<dyn Leaf>,
         file: usize,
     },
     Parallel(Vec<Part>),
@@ -166,7 +166,7 @@ impl NetworkText {
                     let parameter = at.map_or(error.parameter, |at| self.params[params[at]].name.clone());
                     RuleError { parameter, rule: format!("{} in `{}`", error.rule, self.words(part)) }
                 })?;
-                Ok(leaf.named(name))
+                Ok(Network::shared(leaf).named(name))
             }
             PartKind::Table { name, build, file } => {
                 let TableFile { name: parameter, table } = &self.files[*file];
@@ -174,7 +174,7 @@ impl NetworkText {
                     let rule = format!("the table that `{parameter}` stands for");
                     return Err(RuleError { rule, parameter: parameter.clone() });
                 };
-                Ok(build(table).named(name))
+                Ok(Network::shared(build(table)).named(name))
             }
             PartKind::Parallel(parts) => {
                 let parts = parts.iter().map(|part| self.part(part, values, derivative));

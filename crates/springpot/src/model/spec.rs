@@ -1,8 +1,7 @@
 //! The robot as it is described.
 
 use super::kind::{Along, JointKind, MOST_COORDINATES, Move, Space};
-use super::validate::unit;
-use crate::spatial::Rotation;
+use crate::spatial::{Rotation, Vec3};
 
 /// Where a body hangs: on the world or on an earlier body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -221,4 +220,12 @@ pub struct Anchor {
     pub body: Parent,
     /// The point in the body's joint frame (world frame for the world), m.
     pub point: [f64; 3],
+}
+
+/// The direction of a vector that is not zero, safe from overflow and underflow.
+pub(super) fn unit(axis: [f64; 3]) -> Vec3 {
+    let largest = axis.iter().fold(0.0, |s: f64, x| s.max(x.abs()));
+    let scaled = Vec3(axis.map(|x| x / largest));
+    let norm = scaled.norm();
+    Vec3(scaled.0.map(|x| x / norm))
 }

@@ -2,10 +2,9 @@
 
 use super::error::{Field, ModelError};
 use super::kind::JointKind;
-use super::spec::{BodySpec, FrictionLaw, JointSpec, Limits, Parent};
+use super::spec::{BodySpec, FrictionLaw, JointSpec, Limits, Parent, unit};
 use crate::linalg::symmetric_eigenvalues;
 use crate::names::is_name;
-use crate::spatial::Vec3;
 
 /// Refuses a principal moment below minus this share of the largest one.
 const POSITIVE_TOLERANCE: f64 = 1e-12;
@@ -67,14 +66,6 @@ fn axes(body: usize, joint: &JointSpec) -> Result<(), ModelError> {
         return Err(ModelError::NoLead { body, joint: name() });
     }
     Ok(())
-}
-
-/// The direction of a vector that is not zero, safe from overflow and underflow.
-pub(super) fn unit(axis: [f64; 3]) -> Vec3 {
-    let largest = axis.iter().fold(0.0, |s: f64, x| s.max(x.abs()));
-    let scaled = Vec3(axis.map(|x| x / largest));
-    let norm = scaled.norm();
-    Vec3(scaled.0.map(|x| x / norm))
 }
 
 fn names(body: usize, spec: &BodySpec) -> Result<(), ModelError> {

@@ -7,22 +7,19 @@
 
 mod chebyshev;
 mod course;
-mod error;
 mod follow;
 mod hermite;
 mod passage;
 mod point;
 mod solver;
 mod task;
-mod wanted;
 
 pub use course::Course;
-pub use error::PathError;
 pub use point::GripperPoint;
 pub use task::Task;
-pub use wanted::Wanted;
 
 use super::source::Source;
+use super::{PathError, Wanted};
 use crate::model::Model;
 use crate::signal::Signal;
 use follow::Follower;

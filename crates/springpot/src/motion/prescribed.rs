@@ -1,8 +1,9 @@
 //! Joints that move as signals say.
 
 use super::attitude::Attitude;
-use super::gripper_path::{PathError, Wanted};
+use super::error::PathError;
 use super::source::Source;
+use super::wanted::Wanted;
 use crate::model::Model;
 use crate::signal::{Jet, Signal};
 use crate::spatial::Vec3;

@@ -1,6 +1,7 @@
 //! What kinematics given in advance are asked.
 
-use super::gripper_path::{PathError, Wanted};
+use super::error::PathError;
+use super::wanted::Wanted;
 use crate::model::Model;
 use crate::signal::Signal;
 use std::fmt;

@@ -1,8 +1,10 @@
 //! Kinematics given in advance, whatever they are made of.
 
-use super::gripper_path::{GripperPath, PathError, Wanted};
+use super::error::PathError;
+use super::gripper_path::GripperPath;
 use super::prescribed::JointPath;
 use super::source::Source;
+use super::wanted::Wanted;
 use crate::model::Model;
 use crate::signal::Signal;
 use std::sync::Arc;

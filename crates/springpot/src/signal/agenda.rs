@@ -3,27 +3,14 @@
 //! A step looks at a signal at a few nodes; what happens between them it cannot see. So the whole run is looked through beforehand,
 //! cell by cell, with bounds instead of samples (`Expression::look`): where no kink switches and the signal is a polynomial up to a
 //! small share of its own range, the cell is done; where a kink switches once it is located to the last bit; else the cell is halved.
-//! No pulse is too narrow to be found, down to [`FINEST`] of the run. The outcome is a list of *stops*, where steps end, and of
+//! No pulse is too narrow to be found, down to [`FINEST`](super::watched::FINEST) of the run. The outcome is a list of *stops*, where steps end, and of
 //! *windows* that bound the steps in them.
 
 use super::expression::Expression;
 use super::function::{Kind, Signal};
 use super::scan::{MANY_KINKS, Scan};
+use super::watched::{AgendaError, Watched, Window};
 use std::sync::atomic::AtomicBool;
-
-/// The narrowest cell, as a share of the run; what is narrower may be missed.
-pub const FINEST: f64 = 1.0 / (1u64 << 30) as f64;
-
-/// A signal, and what it is to the run.
-#[derive(Debug, Clone, Copy)]
-pub struct Watched<'a> {
-    /// The signal.
-    pub signal: &'a Signal,
-    /// Whether it is a position, whose rates count; else it counts itself (a force, a voltage).
-    pub is_position: bool,
-    /// How many times more than others it may hide: 1 where the motion follows from it.
-    pub slack: f64,
-}
 
 /// What a run must not step over.
 #[derive(Debug, Clone, Default)]
@@ -37,13 +24,6 @@ pub struct Agenda {
     tiny: f64,
 }
 
-/// A stretch of time with a longest step, up to the next window.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Window {
-    pub(super) start: f64,
-    pub(super) longest: f64,
-}
-
 /// Where a step must end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stop {
@@ -51,22 +31,6 @@ pub struct Stop {
     pub before: f64,
     /// The first time on the other side of a kink or jump; `None` where a derivative of samples jumps at `before` itself.
     pub after: Option<f64>,
-}
-
-/// Why a run cannot be looked through.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum AgendaError {
-    /// A signal switches or swings too often.
-    #[error("changes more often than a run can follow: about {times:.1e} times")]
-    TooBusy {
-        /// Index of the signal.
-        signal: usize,
-        /// How often about.
-        times: f64,
-    },
-    /// Interrupted by the user.
-    #[error("interrupted")]
-    Interrupted,
 }
 
 impl Agenda {

@@ -15,10 +15,12 @@ mod rounding;
 mod sampled;
 mod scan;
 mod series;
+pub mod watched;
 
-pub use agenda::{Agenda, AgendaError, Stop, Watched};
+pub use agenda::{Agenda, Stop};
 pub use expression::{Branch, ColumnExpression, Expression, ExpressionError, MovedJump, Slope, SlopeError};
 pub use function::Signal;
 pub use jet::Jet;
 pub(crate) use passages::{Passages, passages};
 pub use sampled::SampleError;
+pub use watched::{AgendaError, Watched};

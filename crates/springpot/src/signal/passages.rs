@@ -1,8 +1,9 @@
 //! When a function of t passes zero in a run: found with bounds over stretches of time, as the kinks of signals are, so that none is too narrow.
 
-use super::agenda::{Agenda, AgendaError, Watched};
+use super::agenda::Agenda;
 use super::expression::Expression;
 use super::function::Signal;
+use super::watched::{AgendaError, Watched};
 use std::sync::atomic::AtomicBool;
 
 /// A value is zero that rounding may have made: what this share of t, and so much, change in it.

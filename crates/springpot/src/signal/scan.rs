@@ -1,9 +1,9 @@
 //! The look through one expression, cell by cell.
 
-use super::agenda::{AgendaError, FINEST, Watched, Window};
 use super::expression::{Branch, Expression};
 use super::function::Signal;
 use super::series::Series;
+use super::watched::{AgendaError, FINEST, Watched, Window};
 use std::rc::Rc;
 use std::sync::atomic::{AtomicBool, Ordering};
 

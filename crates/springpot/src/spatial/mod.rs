@@ -12,7 +12,6 @@ mod quaternion;
 mod rotation;
 mod rotation_vector;
 mod scalar;
-mod sincos;
 mod symmetric;
 mod vector;
 

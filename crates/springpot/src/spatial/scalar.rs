@@ -3,7 +3,7 @@
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use super::sincos;
+mod sincos;
 
 mod sealed {
     pub trait Sealed {}

@@ -1,6 +1,7 @@
 //! On which side of zero the functions of events are, and where they pass it in a step.
 
 use super::nodes::Nodes;
+use super::passage::Passage;
 use super::times::Times;
 use crate::driver::time_loop::Driver;
 use crate::equations::context::Context;
@@ -25,14 +26,6 @@ const LEAST: f64 = 1e-14;
 
 /// In place of the sign of a function that has been 0 for a while: it passes zero where it leaves it.
 const RESTS: i8 = 2;
-
-/// A function has passed zero.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Passage {
-    pub(crate) event: usize,
-    pub(crate) t: f64,
-    pub(crate) rises: bool,
-}
 
 impl Sides {
     /// Whether they were ever looked at.

@@ -1,6 +1,6 @@
 //! Events on functions of t alone, whose passages are known before the run, and parts of t in the others.
 
-use super::sides::Passage;
+use super::passage::Passage;
 use crate::signal::{Agenda, AgendaError, Passages, Signal, Watched, passages};
 use crate::system::error::RunError;
 use crate::system::event::Event;

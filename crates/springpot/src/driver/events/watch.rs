@@ -1,6 +1,7 @@
 //! The events of a run or simulation: steps end where they act, somebody is told where they happen.
 
-use super::sides::{Functions, Passage, Sides};
+use super::passage::Passage;
+use super::sides::{Functions, Sides};
 use crate::driver::roots::{Bracket, MOST_TRIES};
 use crate::driver::time_loop::{Driver, Mark, RowsAhead};
 use crate::equations::context::{Context, Held};

@@ -1,10 +1,12 @@
 //! D^a from node to node: what arrays on any steps and streams have in common.
 
+pub(super) mod march;
+
 use super::definition::Definition;
 use super::error::DerivativeError;
 use super::hermite::{Form, Node};
-use super::march::March;
 use super::order::{Jump, Order};
+use march::March;
 
 /// A Hermite spline that grows by one node at a time.
 #[derive(Debug, Clone)]

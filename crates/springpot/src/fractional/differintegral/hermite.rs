@@ -3,6 +3,8 @@
 //! With θ = (t − t_j)/h the quintic is x₀ + Δ·S + h v₀·V₀ + h v₁·V₁ + h² w₀·W₀ + h² w₁·W₁, Δ = x₁ − x₀, v = x', w = x''
 //! at both ends; the cubic has no w.
 
+pub(super) mod stencil;
+
 /// Coefficients of θ^p, p = 0 … 5.
 pub(super) type Polynomial = [f64; 6];
 
@@ -35,8 +37,8 @@ impl Form {
     /// Number of points of its difference formulas.
     pub(super) fn points(self) -> usize {
         match self {
-            Self::Cubic => super::stencil::CUBIC_POINTS,
-            Self::Quintic => super::stencil::QUINTIC_POINTS,
+            Self::Cubic => stencil::CUBIC_POINTS,
+            Self::Quintic => stencil::QUINTIC_POINTS,
         }
     }
 

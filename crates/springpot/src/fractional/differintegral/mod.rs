@@ -6,12 +6,10 @@ mod definition;
 mod error;
 mod first_slope;
 mod hermite;
-mod march;
 mod method;
 mod order;
 mod piecewise;
 mod sampled;
-mod stencil;
 mod stream;
 mod uniform;
 

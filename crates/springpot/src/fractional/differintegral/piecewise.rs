@@ -1,11 +1,11 @@
 //! Functions of time as polynomials between joints, and D^a of them at any time.
 
 use super::along::Start;
+use super::along::march::{KERNEL_TOLERANCE, past_of};
 use super::definition::Definition;
 use super::error::{DerivativeError, FunctionError};
 use super::first_slope::FirstSlope;
 use super::hermite::{Form, Node};
-use super::march::{KERNEL_TOLERANCE, past_of};
 use super::order::{Jump, Order};
 use super::sampled::{Nodes, negligible_slope};
 use crate::fractional::gamma::reciprocal_gamma;

@@ -1,13 +1,13 @@
 //! D^a of samples.
 
+use super::along::march::KERNEL_TOLERANCE;
 use super::along::{Along, Start};
 use super::definition::Definition;
 use super::error::DerivativeError;
+use super::hermite::stencil::{Equal, first_point};
 use super::hermite::{Form, Node};
-use super::march::KERNEL_TOLERANCE;
 use super::method::Method;
 use super::order::Order;
-use super::stencil::{Equal, first_point};
 use super::uniform::{self, Grid};
 use crate::fractional::scheme::{Samples, Scheme};
 

@@ -1,14 +1,14 @@
 //! D^a of samples as they come: constant time and memory for each.
 
+use super::along::march::KERNEL_TOLERANCE;
 use super::along::{Along, Start};
 use super::definition::Definition;
 use super::error::DerivativeError;
+use super::hermite::stencil::{Equal, QUINTIC_POINTS};
 use super::hermite::{Form, Node};
-use super::march::KERNEL_TOLERANCE;
 use super::method::Method;
 use super::order::Order;
 use super::sampled::negligible_slope;
-use super::stencil::{Equal, QUINTIC_POINTS};
 
 /// One value of a stream.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,9 +2,10 @@
 
 use super::error::SchemeError;
 use super::expansion::Form;
+use super::l1::{self, l12};
 use super::named::Scheme;
 use super::samples::{Samples, UniformPrefix};
-use super::{expansion, fbdf, grunwald_letnikov, l1, l12, rates};
+use super::{expansion, fbdf, grunwald_letnikov, rates};
 use crate::fractional::gamma::reciprocal_gamma;
 use crate::fractional::kind::Kind;
 

@@ -1,5 +1,7 @@
 //! L1: the exact derivative or integral of the broken line through the samples.
 
+pub(super) mod l12;
+
 use super::convolution::{causal_convolution, from_start};
 use super::error::SchemeError;
 use super::samples::{Samples, UniformPrefix};

@@ -49,7 +49,6 @@ mod expansion;
 mod fbdf;
 mod grunwald_letnikov;
 mod l1;
-mod l12;
 mod named;
 mod rates;
 mod samples;

@@ -1,7 +1,7 @@
 //! Hysteresis after Bouc and Wen.
 
 use super::columns::{ByColumns, Columns};
-use super::contract::Leaf;
+use super::contract::{Guard, Holds, Leaf};
 use super::hysteresis::{self, Hysteresis, Matrix, Values};
 use super::kind::{LeafBuild, LeafKind};
 use super::springpot::Coefficient;
@@ -9,10 +9,10 @@ use crate::collocation::{MAX_NODES, Nodes};
 use crate::dual::{Dual, Real};
 use crate::fractional::KernelError;
 use crate::law::catalog::{Param, Range};
-use crate::law::network::{Guard, Holds, Network};
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{InputValue, LocalError, Observation, Point, Power, Powers, Response, Start, Step, Term};
+use std::sync::Arc;
 
 /// F = alpha_h·z, z' = A·x' − gamma·|x'|·z·|z|^(n−1) − beta·x'·|z|^n, z(0) = 0 (Bouc 1967, Wen 1976).
 ///
@@ -223,7 +223,7 @@ pub(super) fn kind() -> LeafKind {
         params: params(),
         build: LeafBuild::Values(|numbers, _| {
             let &[alpha_h, a, beta, gamma, n] = numbers else { unreachable!("values follow params") };
-            Ok(Network::leaf(BoucWen::new(alpha_h, a, beta, gamma, n)?))
+            Ok(Arc::new(BoucWen::new(alpha_h, a, beta, gamma, n)?))
         }),
     }
 }

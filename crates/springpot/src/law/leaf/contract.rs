@@ -5,7 +5,6 @@ use super::jenkins::Jenkins;
 use crate::collocation::MAX_NODES;
 use crate::dual::Dual;
 use crate::fractional::{KernelError, MemoryTangent};
-use crate::law::network::{Guard, Holds};
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
@@ -15,6 +14,22 @@ use crate::law::variation::{
     ObservationVariation, PointVariation, PowersVariation, StepVariation, TakeError, VariationMut, VariationRef,
 };
 use num_complex::Complex64;
+
+/// A function whose zeros are kinks of a force, at the start and at the nodes of a step.
+pub type Guard = [f64; MAX_NODES + 1];
+
+/// Whether a part of a network carries force: what stands behind it in a series is free where it does not.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Holds {
+    /// It never gives any.
+    Never,
+    /// There are strokes at which it yields to every force.
+    AtTimes,
+    /// The same of a spring that is free at some strokes ([`Leaf::free`]) or of friction, which slides: in a series what is slack is theirs.
+    LetsGo,
+    /// Wherever it is.
+    Always,
+}
 
 /// Which time a leaf is asked about.
 #[derive(Debug, Clone, Copy)]

@@ -4,10 +4,10 @@ use super::contract::{Leaf, When};
 use super::kind::{LeafBuild, LeafKind};
 use crate::dual::Dual;
 use crate::law::catalog::{Param, Range};
-use crate::law::network::Network;
 use crate::law::state::StateRef;
 use crate::law::step::{LocalError, Observation, Point, Powers, Response, Step, Term};
 use crate::law::variation::{ObservationVariation, PointVariation, PowersVariation, StepVariation, VariationRef, add};
+use std::sync::Arc;
 
 /// F = c·x'. Dissipates c·x'².
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -100,6 +100,6 @@ pub(super) fn kind() -> LeafKind {
         name: "dashpot",
         equation: "F = c·x'",
         params: vec![Param::new("c", "N*s/m", "viscosity", Range::NOT_NEGATIVE)],
-        build: LeafBuild::Values(|values, _| Ok(Network::dashpot(values[0]))),
+        build: LeafBuild::Values(|values, _| Ok(Arc::new(Dashpot { viscosity: values[0] }))),
     }
 }

@@ -1,8 +1,7 @@
 //! What gives a force that follows from the stroke alone.
 
-use super::contract::{Free, Leaf, When};
+use super::contract::{Free, Holds, Leaf, When};
 use crate::dual::Dual;
-use crate::law::network::Holds;
 use crate::law::state::StateRef;
 use crate::law::step::{Observation, Point, Response, Step, Term};
 use crate::law::tangent::{AtRest, Tangent};

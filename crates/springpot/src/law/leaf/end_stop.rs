@@ -1,9 +1,8 @@
 //! The ends of a joint as stops.
 
 use super::columns::{ByColumns, Columns};
-use super::contract::{Clock, Leaf};
+use super::contract::{Clock, Holds, Leaf};
 use crate::dual::{Dual, Real};
-use crate::law::network::Holds;
 use crate::law::rule::RuleError;
 use crate::law::state::StateRef;
 use crate::law::step::{Observation, Point, Power, Powers, Response, Step, Term};

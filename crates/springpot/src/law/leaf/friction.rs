@@ -1,16 +1,16 @@
 //! Smooth friction.
 
 use super::columns::{ByColumns, Columns};
-use super::contract::{Clock, Leaf, Slide};
+use super::contract::{Clock, Holds, Leaf, Slide};
 use super::kind::{LeafBuild, LeafKind};
 use super::springpot::Coefficient;
 use crate::collocation::MAX_NODES;
 use crate::dual::{Dual, Real};
 use crate::law::catalog::{Param, Range};
-use crate::law::network::{Holds, Network};
 use crate::law::rule::RuleError;
 use crate::law::state::StateRef;
 use crate::law::step::{InputValue, Observation, Point, Power, Powers, Response, Step, Term};
+use std::sync::Arc;
 
 /// F = f·tanh(x'/v0). Dissipates F·x'; creeps where it should stick, at rates of the order of v0. f may follow an input.
 #[derive(Debug, Clone, PartialEq)]
@@ -133,6 +133,6 @@ pub(super) fn kind() -> LeafKind {
             Param::new("f", "N", "friction force", Range::NOT_NEGATIVE),
             Param::new("v0", "m/s", "rate about which it turns over", positive),
         ],
-        build: LeafBuild::Values(|values, _| Ok(Network::leaf(Friction::new(values[0], values[1])?))),
+        build: LeafBuild::Values(|values, _| Ok(Arc::new(Friction::new(values[0], values[1])?))),
     }
 }

@@ -1,13 +1,12 @@
 //! A spring that slips: Jenkins' element.
 
 use super::columns::{ByColumns, Columns};
-use super::contract::Leaf;
+use super::contract::{Guard, Holds, Leaf};
 use super::kind::{LeafBuild, LeafKind};
 use crate::collocation::{MAX_NODES, Nodes};
 use crate::dual::{Dual, Real};
 use crate::fractional::KernelError;
 use crate::law::catalog::{Param, Range};
-use crate::law::network::{Guard, Holds, Network};
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{Observation, Point, Power, Powers, Response, Start, Step, Term};
@@ -15,6 +14,7 @@ use crate::law::tangent::{AtRest, Tangent};
 use num_complex::Complex64;
 use std::cmp::Ordering;
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// A spring k in series with Coulomb friction F_y: F = k·(x − p), |F| ≤ F_y, where p, what has slipped, moves only as far as it must (Jenkins 1962; Iwan 1966).
 ///
@@ -349,6 +349,6 @@ pub(super) fn kind() -> LeafKind {
         name: "jenkins",
         equation: "dF = k·dx, cut at ±F_y",
         params: params(),
-        build: LeafBuild::Values(|values, _| Ok(Network::leaf(Jenkins::new(values[0], values[1])?))),
+        build: LeafBuild::Values(|values, _| Ok(Arc::new(Jenkins::new(values[0], values[1])?))),
     }
 }

@@ -1,11 +1,11 @@
 //! The kinds of leaves that networks may name.
 
+use super::contract::Leaf;
 use super::table::Table;
 use super::{bouc_wen, dashpot, friction, jenkins, polynomial, preload, spring, springpot, stop, table};
 use crate::dual::Dual;
 use crate::fractional::Kind as Derivative;
 use crate::law::catalog::Param;
-use crate::law::network::Network;
 use crate::law::rule::RuleError;
 use std::sync::Arc;
 
@@ -26,9 +26,9 @@ pub struct LeafKind {
 #[derive(Debug, Clone, Copy)]
 pub enum LeafBuild {
     /// Values (SI, in the order of the parameters, each within its range), and the derivative that springpots take.
-    Values(fn(&[Dual], Derivative) -> Result<Network, RuleError>),
+    Values(fn(&[Dual], Derivative) -> Result<Arc<dyn Leaf>, RuleError>),
     /// The table in the file that its argument stands for.
-    Table(fn(&Arc<Table>) -> Network),
+    Table(fn(&Arc<Table>) -> Arc<dyn Leaf>),
 }
 
 impl LeafKind {

@@ -1,11 +1,10 @@
 //! A leaf behind its driver, whose output follows the command with a lag.
 
-use super::contract::{Clock, Leaf, When};
+use super::contract::{Clock, Guard, Holds, Leaf, When};
 use super::hysteresis::{Matrix, Values, resolvent};
 use crate::collocation::{MAX_NODES, Nodes, quadrature, quadrature_defect};
 use crate::dual::Dual;
 use crate::fractional::{KernelError, MemoryTangent};
-use crate::law::network::{Guard, Holds};
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};

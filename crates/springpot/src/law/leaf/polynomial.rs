@@ -1,10 +1,11 @@
 //! The spring whose force is a polynomial of its stroke.
 
+use super::contract::Holds;
 use super::elastic::Elastic;
 use super::kind::{LeafBuild, LeafKind};
 use crate::dual::Dual;
 use crate::law::catalog::{Param, Range};
-use crate::law::network::{Holds, Network};
+use std::sync::Arc;
 
 /// F = k1·x + k2·x² + k3·x³. Stores ½k1·x² + ⅓k2·x³ + ¼k3·x⁴.
 ///
@@ -85,7 +86,7 @@ pub(super) fn kind() -> LeafKind {
             Param::new("k3", "N/m^3", "coefficient of x³", Range::ANY),
         ],
         build: LeafBuild::Values(|values, _| {
-            Ok(Network::leaf(Polynomial { coefficients: std::array::from_fn(|k| values[k]) }))
+            Ok(Arc::new(Polynomial { coefficients: std::array::from_fn(|k| values[k]) }))
         }),
     }
 }

@@ -1,10 +1,11 @@
 //! A constant force.
 
+use super::contract::Holds;
 use super::elastic::Elastic;
 use super::kind::{LeafBuild, LeafKind};
 use crate::dual::Dual;
 use crate::law::catalog::{Param, Range};
-use crate::law::network::{Holds, Network};
+use std::sync::Arc;
 
 /// F = f. Stores f·x, so that the energy closes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,6 +55,6 @@ pub(super) fn kind() -> LeafKind {
         name: "preload",
         equation: "F = f",
         params: vec![Param::new("f", "N", "constant force", Range::ANY)],
-        build: LeafBuild::Values(|values, _| Ok(Network::leaf(Preload { force: values[0] }))),
+        build: LeafBuild::Values(|values, _| Ok(Arc::new(Preload { force: values[0] }))),
     }
 }

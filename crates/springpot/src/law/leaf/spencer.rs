@@ -1,13 +1,12 @@
 //! The magnetorheological damper of Spencer, Dyke, Sain and Carlson.
 
 use super::columns::{ByColumns, Columns};
-use super::contract::{Clock, Leaf};
+use super::contract::{Clock, Guard, Holds, Leaf};
 use super::hysteresis::{Hysteresis, Matrix, Values, resolvent};
 use super::springpot::Coefficient;
 use crate::collocation::{MAX_NODES, Nodes, quadrature, quadrature_defect};
 use crate::dual::{Dual, Real};
 use crate::fractional::KernelError;
-use crate::law::network::{Guard, Holds};
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{InputValue, LocalError, Observation, Point, Power, Powers, Response, Start, Step, Term};

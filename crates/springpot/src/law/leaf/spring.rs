@@ -1,10 +1,11 @@
 //! The linear spring.
 
+use super::contract::Holds;
 use super::elastic::Elastic;
 use super::kind::{LeafBuild, LeafKind};
 use crate::dual::Dual;
 use crate::law::catalog::{Param, Range};
-use crate::law::network::{Holds, Network};
+use std::sync::Arc;
 
 /// F = k·x. Stores ½k·x².
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,6 +55,6 @@ pub(super) fn kind() -> LeafKind {
         name: "spring",
         equation: "F = k·x",
         params: vec![Param::new("k", "N/m", "stiffness", Range::NOT_NEGATIVE)],
-        build: LeafBuild::Values(|values, _| Ok(Network::spring(values[0]))),
+        build: LeafBuild::Values(|values, _| Ok(Arc::new(Spring { stiffness: values[0] }))),
     }
 }

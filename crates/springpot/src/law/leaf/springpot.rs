@@ -1,6 +1,6 @@
 //! The springpot: a fractional derivative of the stroke.
 
-use super::contract::{Leaf, When};
+use super::contract::{Holds, Leaf, When};
 use super::kind::{LeafBuild, LeafKind};
 use crate::collocation::MAX_NODES;
 use crate::collocation::Nodes;
@@ -11,7 +11,6 @@ use crate::fractional::{
     TangentPoint, TangentSeeds, TangentStep,
 };
 use crate::law::catalog::{Param, Range, alpha};
-use crate::law::network::{Holds, Network};
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::Course;
@@ -21,6 +20,7 @@ use crate::law::variation::{
     ObservationVariation, PointVariation, PowersVariation, StepVariation, VariationMut, VariationRef, add,
 };
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// A coefficient that may follow an input: constant + slope·input.
 #[derive(Debug, Clone, PartialEq)]
@@ -600,6 +600,9 @@ pub(super) fn kind() -> LeafKind {
             Param::new("c", "N*s^alpha/m", "coefficient of the fractional derivative", Range::NOT_NEGATIVE),
             alpha(),
         ],
-        build: LeafBuild::Values(|values, derivative| Ok(Network::springpot(values[0], values[1], derivative))),
+        build: LeafBuild::Values(|values, derivative| {
+            let coefficient = Coefficient::constant(values[0]);
+            Ok(Arc::new(Springpot { coefficient, alpha: values[1], derivative }))
+        }),
     }
 }

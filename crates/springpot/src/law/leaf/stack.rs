@@ -1,12 +1,11 @@
 //! A piezo stack and the circuit that drives it.
 
 use super::columns::{ByColumns, Columns};
-use super::contract::{Clock, Leaf, When};
+use super::contract::{Clock, Guard, Holds, Leaf, When};
 use super::hysteresis::{Hysteresis, Matrix, Values, eliminate, resolvent};
 use crate::collocation::{MAX_NODES, Nodes, quadrature, quadrature_defect};
 use crate::dual::{Dual, Real};
 use crate::fractional::KernelError;
-use crate::law::network::{Guard, Holds};
 use crate::law::prandtl_ishlinskii::Stop;
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};

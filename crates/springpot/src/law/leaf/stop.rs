@@ -1,12 +1,12 @@
 //! Springs that are free at some strokes: taut ropes, pads that lift off, end stops.
 
-use super::contract::Free;
+use super::contract::{Free, Holds};
 use super::elastic::Elastic;
 use super::kind::{LeafBuild, LeafKind};
 use crate::dual::Dual;
 use crate::law::catalog::{Param, Range};
-use crate::law::network::{Holds, Network};
 use crate::law::rule::RuleError;
+use std::sync::Arc;
 
 /// F = k·(x − upper) above `upper`, k·(x − lower) below `lower`, 0 between them. Stores ½F²/k.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -129,7 +129,7 @@ fn one_sided(name: &'static str, equation: &'static str, build: LeafBuild) -> Le
 pub(super) fn tension() -> LeafKind {
     let build = LeafBuild::Values(|values, _| {
         RuleError::unless(values[0].value >= 0.0, "k ≥ 0", "k")?;
-        Ok(Network::leaf(Stop::tension(values[0])))
+        Ok(Arc::new(Stop::tension(values[0])))
     });
     one_sided("tension", "F = k·max(x, 0)", build)
 }
@@ -138,7 +138,7 @@ pub(super) fn tension() -> LeafKind {
 pub(super) fn compression() -> LeafKind {
     let build = LeafBuild::Values(|values, _| {
         RuleError::unless(values[0].value >= 0.0, "k ≥ 0", "k")?;
-        Ok(Network::leaf(Stop::compression(values[0])))
+        Ok(Arc::new(Stop::compression(values[0])))
     });
     one_sided("compression", "F = k·min(x, 0)", build)
 }
@@ -155,7 +155,7 @@ pub(super) fn kind() -> LeafKind {
         ],
         build: LeafBuild::Values(|values, _| {
             let &[k, lower, upper] = values else { unreachable!("values follow params") };
-            Ok(Network::leaf(Stop::new(k, lower, upper)?))
+            Ok(Arc::new(Stop::new(k, lower, upper)?))
         }),
     }
 }

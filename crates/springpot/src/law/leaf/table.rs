@@ -1,10 +1,10 @@
 //! The spring whose force is a table of its stroke.
 
+use super::contract::Holds;
 use super::elastic::Elastic;
 use super::kind::{LeafBuild, LeafKind};
 use crate::dual::Dual;
 use crate::law::catalog::{Param, Range};
-use crate::law::network::{Holds, Network};
 use std::sync::Arc;
 
 /// F(x) through points: a monotone piecewise cubic (PCHIP), continued linearly beyond them. Stores ∫₀ˣ F dx exactly.
@@ -203,7 +203,7 @@ pub(super) fn kind() -> LeafKind {
         name: "table",
         equation: "F = F(x) through the rows of a file",
         params: vec![Param::new("file", "", "CSV file with the columns x and F, m and N", Range::ANY)],
-        build: LeafBuild::Table(|table: &Arc<Table>| Network::shared(table.clone())),
+        build: LeafBuild::Table(|table: &Arc<Table>| table.clone()),
     }
 }
 

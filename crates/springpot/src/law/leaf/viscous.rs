@@ -1,11 +1,10 @@
 //! A dashpot whose viscosity follows an input.
 
 use super::columns::{ByColumns, Columns};
-use super::contract::Leaf;
+use super::contract::{Holds, Leaf};
 use super::springpot::Coefficient;
 use crate::collocation::MAX_NODES;
 use crate::dual::{Dual, Real};
-use crate::law::network::Holds;
 use crate::law::rule::RuleError;
 use crate::law::state::StateRef;
 use crate::law::step::{InputValue, LocalError, Observation, Point, Power, Powers, Response, Step, Term};

@@ -7,6 +7,7 @@
 
 mod answers;
 mod clock;
+mod unshifted;
 mod vary;
 mod warming;
 
@@ -15,11 +16,12 @@ use super::{LeafPart, Network, Series};
 use crate::collocation::{MAX_NODES, Nodes, lagrange_row};
 use crate::fractional::KernelError;
 use crate::law::heat::Heat;
-use crate::law::leaf::{self, Unshifted};
+use crate::law::leaf;
 use crate::law::state::{State, StateRef};
 use crate::law::step::{InputValue, Point, Powers, Start, Step};
 use clock::Clock;
 use std::sync::Arc;
+use unshifted::Unshifted;
 use warming::Temperatures;
 
 type Values = [f64; MAX_NODES + 1];

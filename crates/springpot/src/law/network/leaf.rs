@@ -1,11 +1,11 @@
 //! A leaf in its place in a network.
 
+use super::Network;
 use super::part::{Onset, Part, Reported, Seen, Take};
-use super::{Guard, Holds, Network};
 use crate::collocation::{MAX_NODES, Nodes};
 use crate::fractional::{KernelError, Memory, RatePolynomial};
 use crate::law::harmonic::{self, Sine};
-use crate::law::leaf::{Free, Leaf, Slide, When};
+use crate::law::leaf::{Free, Guard, Holds, Leaf, Slide, When};
 use crate::law::past::Recalled;
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};

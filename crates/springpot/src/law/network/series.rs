@@ -18,12 +18,12 @@ mod vary;
 mod vary_start;
 
 use super::part::{self, Onset, Part, Reported, Take};
-use super::{Guard, Holds, MOST_IN_SERIES, Network};
+use super::{MOST_IN_SERIES, Network};
 use crate::collocation::inner::TABLEAU_OF_FOUR;
 use crate::collocation::{MAX_NODES, Nodes};
 use crate::fractional::{KernelError, Kind as Derivative};
 use crate::law::harmonic::{self, Sine};
-use crate::law::leaf::{Jenkins, Slide};
+use crate::law::leaf::{Guard, Holds, Jenkins, Slide};
 use crate::law::past::Recalled;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{Course, InputValue, LocalError, Point, Power, Powers, Response, Start, Step, Term};

@@ -304,6 +304,8 @@ impl RadauStep {
     ) {
         let (n, own) = (variation.nv(), free.len());
         let size = STAGES * own;
+        // What changes of an element's force by the accelerations of a stage.
+        let mut force = vec![0.0; own];
         for i in 0..STAGES {
             let node = &variation.nodes[i + 1];
             for j in 0..STAGES {
@@ -324,17 +326,19 @@ impl RadauStep {
                 let response = equations.bank.response(e);
                 let [on, _] = &node.gradients[e];
                 for j in 0..STAGES {
+                    force.fill(0.0);
                     for m in 0..STAGES {
                         let [gradient, bend] = &variation.nodes[m + 1].gradients[e];
                         let (stroke, rate) = (response.d_stroke[i][m], response.d_rate[i][m]);
                         let (twice, once) = (h * h * A_SQUARED[m][j], h * A[m][j]);
                         let [by_gradient, by_bend] = [twice * stroke + once * rate, twice * rate];
-                        for (r, &row) in free.iter().enumerate().filter(|(_, row)| felt(**row)) {
-                            let line = &mut matrix[(i * own + r) * size + j * own..][..own];
-                            for (entry, &column) in line.iter_mut().zip(free) {
-                                *entry += on[row] * (by_gradient * gradient[column] + by_bend * bend[column]);
-                            }
+                        for (force, &column) in force.iter_mut().zip(free) {
+                            *force += by_gradient * gradient[column] + by_bend * bend[column];
                         }
+                    }
+                    for (r, &row) in free.iter().enumerate().filter(|(_, row)| on[**row] != 0.0 && felt(**row)) {
+                        let line = &mut matrix[(i * own + r) * size + j * own..][..own];
+                        line.iter_mut().zip(&force).for_each(|(entry, force)| *entry += on[row] * force);
                     }
                 }
             }

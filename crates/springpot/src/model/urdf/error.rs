@@ -44,34 +44,3 @@ impl std::error::Error for UrdfError {
         self.problem.source()
     }
 }
-
-/// Whose element it is.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Owner {
-    /// The `<robot>` itself.
-    Robot,
-    /// The link of that name.
-    Link(String),
-    /// The joint of that name.
-    Joint(String),
-}
-
-impl Owner {
-    /// The name of the link or joint.
-    pub fn name(&self) -> Option<&str> {
-        match self {
-            Self::Robot => None,
-            Self::Link(name) | Self::Joint(name) => Some(name),
-        }
-    }
-}
-
-impl fmt::Display for Owner {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Robot => f.write_str("<robot>"),
-            Self::Link(name) => write!(f, "link {name:?}"),
-            Self::Joint(name) => write!(f, "joint {name:?}"),
-        }
-    }
-}

@@ -1,7 +1,8 @@
 //! `<joint>`: what it joins, how it moves.
 
-use super::error::{Owner, UrdfError};
+use super::error::UrdfError;
 use super::limit;
+use super::problem::Owner;
 use super::problem::{TYPES, UrdfProblem, brief};
 use super::reader::{Node, Reader};
 use super::warning::UrdfWarningKind;

@@ -1,6 +1,7 @@
 //! `<limit>` of a joint.
 
-use super::error::{Owner, UrdfError};
+use super::error::UrdfError;
+use super::problem::Owner;
 use super::reader::{Node, Reader};
 use super::warning::UrdfWarningKind;
 use crate::model::kind::JointKind;

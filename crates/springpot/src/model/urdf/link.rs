@@ -1,6 +1,7 @@
 //! `<link>`: its inertia, and the files of its shapes.
 
-use super::error::{Owner, UrdfError};
+use super::error::UrdfError;
+use super::problem::Owner;
 use super::problem::UrdfProblem;
 use super::reader::{Node, Reader};
 use crate::linalg::symmetric_eigenvalues;

@@ -46,10 +46,10 @@ mod warning;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-pub use error::{Owner, UrdfError};
+pub use error::UrdfError;
 pub use link::Inertial;
 pub use package::MeshPlace;
-pub use problem::UrdfProblem;
+pub use problem::{Owner, UrdfProblem};
 pub use visual::{Visual, VisualShape};
 pub use warning::{UrdfPlace, UrdfWarning, UrdfWarningKind};
 

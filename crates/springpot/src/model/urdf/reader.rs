@@ -2,7 +2,8 @@
 
 use roxmltree::{Attribute, Node as XmlNode};
 
-use super::error::{Owner, UrdfError};
+use super::error::UrdfError;
+use super::problem::Owner;
 use super::problem::UrdfProblem;
 use super::source::Source;
 use super::warning::{UrdfWarningKind, Warnings};

@@ -3,10 +3,11 @@
 use std::collections::HashSet;
 use std::path::Path;
 
-use super::error::{Owner, UrdfError};
+use super::error::UrdfError;
 use super::joint::JointEntry;
 use super::link::{Inertial, LinkEntry, Physical};
 use super::package::{Found, Packages};
+use super::problem::Owner;
 use super::problem::{UrdfProblem, brief};
 use super::reader::{Node, Reader};
 use super::source::Source;

@@ -3,9 +3,10 @@
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-use super::error::{Owner, UrdfError};
+use super::error::UrdfError;
 use super::joint::JointEntry;
 use super::link::LinkEntry;
+use super::problem::Owner;
 use super::problem::UrdfProblem;
 use super::reader::Reader;
 use crate::names::nearest;

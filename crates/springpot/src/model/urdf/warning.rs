@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::fmt;
 
-use super::error::Owner;
+use super::problem::Owner;
 
 /// Something that was not used, or assumed, at one or more places of the file.
 ///

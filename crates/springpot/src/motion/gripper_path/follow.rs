@@ -5,10 +5,10 @@
 //! method puts right. They never skip what the path's signals do ([`Agenda`]).
 
 use super::course::{Course, MOST_KNOTS};
-use super::error::PathError;
 use super::hermite::{Knot, Knots, quintic_into};
 use super::passage::{CLOSE, Passage, SINGULAR, Search};
 use super::solver::{ITERATIONS, Miss, START_ITERATIONS, Solver};
+use crate::motion::PathError;
 use crate::signal::{Agenda, AgendaError, Watched};
 use std::sync::atomic::Ordering;
 

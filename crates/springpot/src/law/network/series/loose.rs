@@ -7,7 +7,8 @@ use super::play::{self, Play, Side};
 use super::slide::{self, Friction};
 use super::solve::{Inner, invert};
 use crate::collocation::MAX_NODES;
-use crate::law::network::{Holds, MOST_IN_SERIES, Network};
+use crate::law::leaf::Holds;
+use crate::law::network::{MOST_IN_SERIES, Network};
 use crate::law::step::Step;
 
 /// Rounds in which nodes change sides, before all ways are tried.

@@ -1,10 +1,10 @@
 //! L1-2: the exact derivative or integral of parabolas through three samples each.
 
-use super::convolution::{causal_convolution, differences, from_start};
-use super::error::SchemeError;
-use super::l1::{self, check_direct_terms, pieces, row_sum};
-use super::samples::Samples;
+use super::{self as l1, check_direct_terms, pieces, row_sum};
 use crate::fractional::gamma::reciprocal_gamma;
+use crate::fractional::scheme::convolution::{causal_convolution, differences, from_start};
+use crate::fractional::scheme::error::SchemeError;
+use crate::fractional::scheme::samples::Samples;
 
 /// Derivative or integral of x − x(0): L1 plus, for every step but the first, the parabola through its ends and the
 /// sample before:
@@ -15,7 +15,7 @@ use crate::fractional::gamma::reciprocal_gamma;
 /// Above alpha = 1 the integrals are finite parts: y is the Riemann–Liouville derivative of the chain of parabolas, the
 /// jumps of its slope at the samples before t_n included. (Without them the order would fall to 1.) At alpha = 2 only
 /// the second difference at t_n is left.
-pub(super) fn differentiate(samples: &Samples, alpha: f64) -> Result<Vec<f64>, SchemeError> {
+pub(in crate::fractional::scheme) fn differentiate(samples: &Samples, alpha: f64) -> Result<Vec<f64>, SchemeError> {
     let prefix = samples.uniform_prefix();
     check_direct_terms(samples, prefix)?;
     let x = &samples.x[..prefix.rows];

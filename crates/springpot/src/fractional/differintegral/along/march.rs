@@ -1,19 +1,19 @@
 //! D^a along pieces, one after the other: constant time for each.
 
-use super::error::DerivativeError;
-use super::order::Order;
+use crate::fractional::differintegral::error::DerivativeError;
+use crate::fractional::differintegral::order::Order;
 use crate::fractional::history::History;
 use crate::fractional::kernel::{Kernel, KernelError};
 
 /// Relative error of the kernel t^{beta−1}/Γ(beta) as a sum of exponentials, where nothing else is asked for.
-pub(super) const KERNEL_TOLERANCE: f64 = 1e-12;
+pub(in crate::fractional::differintegral) const KERNEL_TOLERANCE: f64 = 1e-12;
 
 /// Most coefficients of a piece of y.
 const MOST: usize = 8;
 
 /// I^beta x⁽ᵐ⁾ at the ends of pieces of x.
 #[derive(Debug, Clone)]
-pub(super) struct March {
+pub(in crate::fractional::differintegral) struct March {
     order: Order,
     /// None where the order is an integer.
     past: Option<History>,
@@ -26,14 +26,19 @@ pub(super) struct March {
 
 impl March {
     /// For pieces from `shortest` on, up to `horizon`, with a kernel that errs by `tolerance`.
-    pub(super) fn new(order: Order, shortest: f64, horizon: f64, tolerance: f64) -> Result<Self, DerivativeError> {
+    pub(in crate::fractional::differintegral) fn new(
+        order: Order,
+        shortest: f64,
+        horizon: f64,
+        tolerance: f64,
+    ) -> Result<Self, DerivativeError> {
         let past = if order.is_integer() { None } else { Some(past_of(&order, shortest, horizon, tolerance)?) };
         let (factors, y) = (order.factors(MOST), Vec::with_capacity(MOST));
         Ok(Self { order, past, running: [0.0; 2], factors, y, scale: (0.0, 0.0) })
     }
 
     /// The value at the end of the next piece of x, given by its coefficients in powers of θ; `end` is its time.
-    pub(super) fn advance(&mut self, width: f64, x: &[f64], end: f64) -> f64 {
+    pub(in crate::fractional::differintegral) fn advance(&mut self, width: f64, x: &[f64], end: f64) -> f64 {
         self.order.lower(width, x, &mut self.running, &mut self.y);
         let Some(past) = &mut self.past else { return self.y.iter().sum() };
         // Equal steps differ by the rounding of their times.
@@ -48,7 +53,12 @@ impl March {
 }
 
 /// An empty past of pieces from `shortest` on, up to `horizon`, with a kernel that errs by `tolerance`.
-pub(super) fn past_of(order: &Order, shortest: f64, horizon: f64, tolerance: f64) -> Result<History, KernelError> {
+pub(in crate::fractional::differintegral) fn past_of(
+    order: &Order,
+    shortest: f64,
+    horizon: f64,
+    tolerance: f64,
+) -> Result<History, KernelError> {
     // A single piece has no past, but the kernel wants an interval.
     Ok(History::new(Kernel::new(order.alpha, tolerance, shortest, horizon.max(2.0 * shortest))?))
 }

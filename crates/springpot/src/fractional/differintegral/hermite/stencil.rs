@@ -1,22 +1,22 @@
 //! x' and x'' at samples from their neighbours.
 
 /// Points whose polynomial gives x' and x'' for the quintic spline: both then err by O(h⁵) or less.
-pub(super) const QUINTIC_POINTS: usize = 7;
+pub(in crate::fractional::differintegral) const QUINTIC_POINTS: usize = 7;
 /// Points whose polynomial gives x' for the cubic: O(h⁴).
-pub(super) const CUBIC_POINTS: usize = 5;
+pub(in crate::fractional::differintegral) const CUBIC_POINTS: usize = 5;
 
 /// Weights of x_j in x' and x'' at one of the points.
-pub(super) type Weights = [[f64; 2]; QUINTIC_POINTS];
+pub(in crate::fractional::differintegral) type Weights = [[f64; 2]; QUINTIC_POINTS];
 
 /// First row of the `width` points nearest to `row` among `rows`.
-pub(super) fn first_point(row: usize, width: usize, rows: usize) -> usize {
+pub(in crate::fractional::differintegral) fn first_point(row: usize, width: usize, rows: usize) -> usize {
     row.saturating_sub(width / 2).min(rows - width)
 }
 
 /// Weights of the derivatives at `at` of the polynomial through `points`, by recursion over the points.
 ///
 /// B. Fornberg, Math. Comp. 51 (1988) 699.
-pub(super) fn weights(points: &[f64], at: usize) -> Weights {
+pub(in crate::fractional::differintegral) fn weights(points: &[f64], at: usize) -> Weights {
     let z = points[at];
     let mut c = [[0.0; 3]; QUINTIC_POINTS];
     c[0][0] = 1.0;
@@ -40,7 +40,7 @@ pub(super) fn weights(points: &[f64], at: usize) -> Weights {
 }
 
 /// x' and x'' at point `at`; the weights of either sum to 0, so differences alone are summed.
-pub(super) fn apply(weights: &Weights, x: &[f64], at: usize) -> [f64; 2] {
+pub(in crate::fractional::differintegral) fn apply(weights: &Weights, x: &[f64], at: usize) -> [f64; 2] {
     let mut sums = [0.0; 2];
     for (w, value) in weights.iter().zip(x) {
         sums[0] += w[0] * (value - x[at]);
@@ -51,27 +51,27 @@ pub(super) fn apply(weights: &Weights, x: &[f64], at: usize) -> [f64; 2] {
 
 /// Weights on equal steps of 1, for every position among `width` points.
 #[derive(Debug, Clone)]
-pub(super) struct Equal(Vec<Weights>);
+pub(in crate::fractional::differintegral) struct Equal(Vec<Weights>);
 
 impl Equal {
-    pub(super) fn new(width: usize) -> Self {
+    pub(in crate::fractional::differintegral) fn new(width: usize) -> Self {
         let points: Vec<f64> = (0..width).map(|j| j as f64).collect();
         Self((0..width).map(|at| weights(&points, at)).collect())
     }
 
     /// Number of points.
-    pub(super) fn width(&self) -> usize {
+    pub(in crate::fractional::differintegral) fn width(&self) -> usize {
         self.0.len()
     }
 
     /// x' and x'' at point `at` of points with this step.
-    pub(super) fn derivatives(&self, step: f64, x: &[f64], at: usize) -> [f64; 2] {
+    pub(in crate::fractional::differintegral) fn derivatives(&self, step: f64, x: &[f64], at: usize) -> [f64; 2] {
         let [first, second] = apply(&self.0[at], x, at);
         [first / step, second / (step * step)]
     }
 
     /// The same for any times; equal ones take the ready weights.
-    pub(super) fn derivatives_at(&self, t: &[f64], x: &[f64], at: usize) -> [f64; 2] {
+    pub(in crate::fractional::differintegral) fn derivatives_at(&self, t: &[f64], x: &[f64], at: usize) -> [f64; 2] {
         let last = self.width() - 1;
         let step = (t[last] - t[0]) / last as f64;
         let slack = 1e-12 * step + 4.0 * f64::EPSILON * t[last].abs();

@@ -1,10 +1,10 @@
 //! A leaf that temperature does not shift, in a law that is told in reduced time.
 
-use super::contract::{Leaf, Slide, When};
 use crate::collocation::MAX_NODES;
 use crate::dual::Dual;
 use crate::fractional::{KernelError, MemoryTangent};
-use crate::law::network::{Holds, LeafPart};
+use crate::law::leaf::{Holds, Leaf, Slide, When};
+use crate::law::network::LeafPart;
 use crate::law::rule::RuleError;
 use crate::law::state::{State, StateMut, StateRef, StateSize};
 use crate::law::step::{InputValue, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
