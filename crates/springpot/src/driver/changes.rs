@@ -63,6 +63,19 @@ impl Driver {
         Ok(())
     }
 
+    /// What parameters change where an event set what was set already: the motion goes on as it did, its derivatives by what was set do not.
+    ///
+    /// # Errors
+    /// As of [`Self::settle_variation`].
+    pub(super) fn settle_still(&mut self) -> Result<(), RunError> {
+        if !self.recorder.variation.as_ref().is_some_and(|variation| variation.is_about_to_change()) {
+            return Ok(());
+        }
+        let [at, ..] = &self.recorder.evaluations;
+        let own = [at.v.clone(), at.a.clone()];
+        self.settle_variation(own.each_ref().map(|own| &own[..]), false)
+    }
+
     /// How much later joints come to rest and forces of elements jump, for what was noted at the present time, behind a step of size `h`.
     pub(super) fn vary_changes(&mut self, h: f64) {
         let Recorder { evaluations: [at, ..], equations, variation, .. } = &mut self.recorder;

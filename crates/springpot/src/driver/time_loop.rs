@@ -304,7 +304,9 @@ impl Driver {
     pub(super) fn settle(&mut self, cx: Context) -> Result<bool, RunError> {
         self.close(cx)?;
         let sampled = Some(self.t).filter(|t| self.has_fixed_steps() && self.samples_at(*t));
-        let Some(after) = self.crossing.take().or(sampled).or_else(|| self.kink_at_hand(cx)) else { return Ok(false) };
+        let Some(after) = self.crossing.take().or(sampled).or_else(|| self.kink_at_hand(cx)) else {
+            return self.settle_still().map(|()| false);
+        };
         if self.samples_at(after) {
             self.sample(cx, after)?;
         }

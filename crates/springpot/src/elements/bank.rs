@@ -2,6 +2,8 @@
 
 mod variation;
 
+pub(crate) use variation::LastNode;
+
 use crate::collocation::Nodes;
 use crate::collocation::{MAX_NODES, STAGES};
 use crate::fractional::{Form, KernelError};

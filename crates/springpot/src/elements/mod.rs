@@ -4,8 +4,8 @@ mod bank;
 mod element;
 mod measure;
 
-pub(crate) use bank::Kept;
 pub use bank::{BankState, ElementBank, MemoryRange};
+pub(crate) use bank::{Kept, LastNode};
 pub use element::Element;
 pub use measure::{
     Bushing, Cable, CableError, Component, Joint, JointMeasureError, Line, Measure, NoDirection, Reading,

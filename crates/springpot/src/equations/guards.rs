@@ -7,10 +7,12 @@ use super::control::{ControlSeen, Guard};
 use super::evaluate::{ElementEvaluation, Evaluation, Scratch};
 use super::friction::CHATTER;
 use super::kinks::{Kink, Seen};
+use super::node::ElementNodes;
 use super::node::Origin;
 use super::resistance::sign;
 use super::zero::{SAMPLES, first_zero};
 use crate::collocation::{Cubic, STAGES};
+use crate::elements::LastNode;
 use crate::system::error::RunError;
 
 /// Where holding forces are looked at besides the nodes: between them.
@@ -265,11 +267,23 @@ impl Equations {
     /// The first kink of a force in the step that the bank was told.
     pub(crate) fn look_for_kinks(&mut self, h: f64, noise: &[f64]) -> Seen {
         let Self { kinks, bank, elements, free, .. } = self;
-        // What rounding of the accelerations does to a stroke.
-        let rounded = |e: usize| -> f64 {
-            free.iter().zip(noise).map(|(&k, noise)| elements[e].gradient[k].abs() * h * noise).sum()
-        };
-        kinks.look(bank, rounded)
+        kinks.look(bank, |e| rounded(&elements[e], free, h, noise))
+    }
+
+    /// Tells elements on a kink of which the step ends, of size `h`, that it ends just before: its slopes are those of the near side. To be followed by
+    /// [`Self::stand`].
+    pub(crate) fn lean(&mut self, h: f64, noise: &[f64]) -> Vec<(usize, LastNode)> {
+        let Self { kinks, bank, elements, free, .. } = self;
+        if kinks.is_idle() {
+            return Vec::new();
+        }
+        let at_end = kinks.at_end(bank, |e| rounded(&elements[e], free, h, noise));
+        at_end.into_iter().map(|e| (e, bank.lean(e))).collect()
+    }
+
+    /// Tells them where it ends again.
+    pub(crate) fn stand(&mut self, leaning: Vec<(usize, LastNode)>) {
+        leaning.into_iter().for_each(|(e, last)| self.bank.stand(e, last));
     }
 
     /// How far a kink is away at θ; negative behind it.
@@ -393,4 +407,9 @@ impl Holding {
     fn margin(&self, direction: f64, theta: f64) -> f64 {
         self.breaking - direction * self.at(theta)
     }
+}
+
+/// What rounding of the accelerations does to the stroke of an element in a step of size `h`.
+fn rounded(element: &ElementNodes, free: &[usize], h: f64, noise: &[f64]) -> f64 {
+    free.iter().zip(noise).map(|(&k, noise)| element.gradient[k].abs() * h * noise).sum()
 }

@@ -107,6 +107,22 @@ impl Kinks {
         }
     }
 
+    /// Elements on a kink of which the step that the bank was told ends, `noise` as in [`Self::look`].
+    pub(crate) fn at_end(&mut self, bank: &ElementBank, noise: impl Fn(usize) -> f64) -> Vec<usize> {
+        let Self { elements, guards, .. } = self;
+        let mut ends = |element: &usize| {
+            let noise = ROUNDINGS * (bank.resolution(*element) + noise(*element));
+            guards.clear();
+            bank.guards(*element, guards);
+            guards.iter().any(|values| {
+                let moved = values.iter().fold(0.0, |moved: f64, value| moved.max((value - values[0]).abs()));
+                let sign = if values[0].abs() <= noise { values[1] } else { values[0] }.signum();
+                moved > noise && (0.0..=(SHARE * moved).max(noise)).contains(&(-sign * values[STAGES]))
+            })
+        };
+        elements.iter().copied().filter(|element| ends(element)).collect()
+    }
+
     /// How far a kink is away at θ; negative behind it.
     pub(crate) fn value(&mut self, bank: &ElementBank, kink: Kink, theta: f64) -> f64 {
         self.guards.clear();

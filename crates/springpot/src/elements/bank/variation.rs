@@ -1,12 +1,41 @@
 //! What parameters change of the elements of a bank.
 
-use super::{Banked, ElementBank, Kept};
+use super::{Banked, ElementBank, Kept, Told};
 use crate::law::variation::{
     LawVariation, ObservationVariation, PointVariation, PowersVariation, StepVariation, TakeError,
 };
-use crate::law::{Point, State, When};
+use crate::law::{Point, Response, State, When};
+
+/// How far towards the node before it the last node leans, as a share: more than a step may end behind a kink.
+const LEANS: f64 = 1e-6;
+
+/// The last node of a step as an element was told it, and what it answered.
+#[derive(Debug)]
+pub(crate) struct LastNode {
+    stroke: f64,
+    rate: f64,
+    response: Box<Response>,
+}
 
 impl ElementBank {
+    /// Tells element `e` that the last node of the step is a little nearer to the one before, and asks it anew.
+    pub(crate) fn lean(&mut self, e: usize) -> LastNode {
+        let (last, element) = (self.step.nodes.count(), &mut self.elements[e]);
+        let Told { stroke, rate, .. } = &mut element.told;
+        let kept = LastNode { stroke: stroke[last], rate: rate[last], response: Box::new(element.response) };
+        for told in [stroke, rate] {
+            told[last] += LEANS * (told[last - 1] - told[last]);
+        }
+        self.evaluate_element(e);
+        kept
+    }
+
+    /// Tells element `e` the last node as it was.
+    pub(crate) fn stand(&mut self, e: usize, LastNode { stroke, rate, response }: LastNode) {
+        let (last, element) = (self.step.nodes.count(), &mut self.elements[e]);
+        (element.told.stroke[last], element.told.rate[last], element.response) = (stroke, rate, *response);
+    }
+
     /// The state of the law of element `e`; none where it takes no part.
     pub(crate) fn law_state(&self, e: usize) -> Option<&State> {
         self.elements[e].kept.as_ref().map(|kept| &kept.state)

@@ -23,6 +23,9 @@ const JUMP: f64 = 1e-5;
 /// A guard this near its zero is on it, in units of what it goes over in the step.
 const ON_IT: f64 = 1e-6;
 
+/// A velocity that changes by no more than accelerations do to it in this share of the time does not jump.
+const STILL: f64 = 1e-12;
+
 /// What rounding makes of a stroke, as a share of it and of its coordinate.
 const ROUNDINGS: f64 = 256.0 * f64::EPSILON;
 
@@ -102,6 +105,11 @@ impl Variation {
     /// Where derivatives ended, parameter by parameter.
     pub(crate) fn lost(&self) -> &[Option<Lost>] {
         &self.saltation.lost
+    }
+
+    /// Whether a change is noted whose far side nobody has gone to.
+    pub(crate) fn is_about_to_change(&self) -> bool {
+        self.saltation.later.is_some()
     }
 
     /// Derivatives by parameter `p` end at `t`.
@@ -302,7 +310,12 @@ impl Variation {
         let ([v, a], [v_after, a_after]) = (before, after);
         let arrived = self.saltation.arrived.take();
         let a = arrived.as_deref().unwrap_or(a);
-        if jumps(JUMP, v, v_after, |k| equations.free().contains(&k)) {
+        // Where friction catches a joint, what its velocity had left is no jump.
+        let is_moved = |k: usize| {
+            let left = STILL * start.t * a_after[k].abs().max(a[k].abs());
+            !equations.free().contains(&k) && (v_after[k] - v[k]).abs() > left
+        };
+        if jumps(JUMP, v, v_after, is_moved) {
             self.follow_jump(start.t, [v, v_after]);
         }
         match self.saltation.later.take() {

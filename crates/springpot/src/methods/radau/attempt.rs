@@ -102,7 +102,10 @@ impl Radau {
         let Some(variation) = variation.as_deref_mut().filter(|variation| variation.shares_in_steps()) else {
             return 0.0;
         };
-        if self.step.vary(equations, variation, target.size, target.end_inputs()) {
+        let leaning = equations.lean(target.size, &self.step.errors.noise);
+        let is_regular = self.step.vary(equations, variation, target.size, target.end_inputs());
+        equations.stand(leaning);
+        if is_regular {
             let hidden = variation.hidden_error(equations, TANGENTS * recorder.settings.rtol);
             self.step.estimate_variation(equations, variation, target.size).max(hidden)
         } else {
