@@ -113,9 +113,19 @@ impl Designed {
             })
             .collect();
         // The best of those that hold, else the one that is nearest to it is not known: the first.
-        let best = (0..starts.len())
-            .filter(|k| starts[*k].is_admissible)
-            .min_by(|one, other| (sign * starts[*one].objective).total_cmp(&(sign * starts[*other].objective)));
+        let least = |among: &dyn Fn(&Reached) -> bool| {
+            (0..starts.len())
+                .filter(|k| starts[*k].is_admissible && among(&starts[*k]))
+                .min_by(|one, other| (sign * starts[*one].objective).total_cmp(&(sign * starts[*other].objective)))
+        };
+        // One that has converged, where none is better by more than constraints may be missed by.
+        let [converged, best] = [least(&|start| start.status == "converged"), least(&|_| true)];
+        let is_as_good = |one: usize, best: usize| {
+            let [one, best] = [one, best].map(|k| sign * starts[k].objective);
+            one - best <= 10.0 * HOLDS * best.abs().max(one.abs())
+        };
+        let as_good = converged.zip(best).filter(|(one, best)| is_as_good(*one, *best)).map(|(one, _)| one);
+        let best = as_good.or(best);
         let file: Vec<f64> = problem.parameters().iter().map(|parameter| parameter.value).collect();
         let values = best.map_or_else(|| file.clone(), |k| starts[k].values.clone());
         let after = if interrupted { None } else { problem.evaluate(&values) };

@@ -29,6 +29,8 @@ pub struct CaseDerivatives {
 pub(super) struct Losses {
     /// Of each derivative its place in a row, that of its column, and its parameter.
     places: Vec<[usize; 3]>,
+    /// Those of works among them, which end by themselves.
+    works: Vec<usize>,
     lost: Vec<Lost>,
 }
 
@@ -43,7 +45,8 @@ impl Losses {
             let parameter = sensitivity.parameters.iter().position(|own| own.name == by)?;
             Some([k, at(of)?, parameter])
         });
-        Some(Self { places: places.collect(), lost })
+        let works = columns.iter().enumerate().filter(|(_, column)| is_of_work(&column.name)).map(|(k, _)| k);
+        Some(Self { places: places.collect(), works: works.collect(), lost })
     }
 
     /// The derivatives by a parameter are lost; what was lost before stays so.
@@ -56,6 +59,9 @@ impl Losses {
     /// Whether a row has cells to be emptied; a derivative that is not finite where its column is ends those by its parameter.
     pub(super) fn see(&mut self, row: &[f64]) -> bool {
         for &[k, of, parameter] in &self.places {
+            if self.works.contains(&k) {
+                continue;
+            }
             if !row[k].is_finite() && row[of].is_finite() && self.lost.iter().all(|lost| lost.parameter != parameter) {
                 let why = "a derivative is not finite".to_owned();
                 self.lost.push(Lost { parameter, t: row[0], why });
@@ -77,6 +83,13 @@ impl Losses {
     pub(super) fn lost(&self) -> &[Lost] {
         &self.lost
     }
+}
+
+/// Whether a column is the derivative of a work, whose flow may be unknown where the motion is not.
+fn is_of_work(name: &str) -> bool {
+    Quantity::of_derivative(name).is_some_and(|(of, _)| {
+        matches!(of, "energy.actuators" | "energy.joints") || of.ends_with(".input") || of.ends_with(".dissipated")
+    })
 }
 
 /// What metrics and their gradients are worked out of.

@@ -262,7 +262,7 @@ impl<'a> Record<'a> {
         }
         let numbers = Numbers::read(&csv, &path, separator, &names)?;
         let at = match (&time, self.kind) {
-            (Some((name, scale)), _) => numbers.plain(name).iter().map(|t| scale * t).collect(),
+            (Some((name, scale)), _) => numbers.plain(name).iter().map(|t| in_seconds(*t, *scale)).collect(),
             (None, DMA) => {
                 let wanted = self.get("frequency").expect("a column that was asked for");
                 numbers.si(wanted, &[("Hz", TAU), ("rad/s", 1.0)])?
@@ -467,4 +467,9 @@ pub(super) enum Of<'o> {
     Run { columns: &'o [(String, String)], end: f64 },
     /// An element with these inputs and their units.
     Element { inputs: &'o [(String, String)], is_rotation: bool },
+}
+
+/// A time in a unit of so many seconds: of what divides a second the nearest number, as it is read where it is written.
+fn in_seconds(t: f64, scale: f64) -> f64 {
+    if scale < 1.0 { t / scale.recip() } else { t * scale }
 }

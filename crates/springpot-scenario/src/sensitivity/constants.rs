@@ -7,24 +7,16 @@ use crate::units::{self, Unit};
 use springpot::signal::{Expression, Signal, Slope as SignalSlope, SlopeError};
 
 /// Sections that say nothing to the equations at a time t.
-const SILENT: [&str; 12] = [
-    "title",
-    "constants",
-    "time",
-    "solver",
-    "sweep",
-    "figure",
-    "output",
-    "metric",
-    "parameter",
-    "sensitivity",
-    "data",
-    "fit",
-];
+const SILENT: [&str; 9] =
+    ["title", "constants", "sweep", "figure", "output", "parameter", "sensitivity", "data", "fit"];
+
+/// Sections that say which rows there are and what is made of them.
+const OF_ROWS: [&str; 3] = ["time", "solver", "metric"];
 
 /// Keys whose texts are no expressions.
-const TEXTS: [&str; 19] = [
+const TEXTS: [&str; 20] = [
     "name",
+    "of",
     "body",
     "parent",
     "joint",
@@ -85,8 +77,14 @@ fn scale(unit: Option<&std::sync::Arc<Node>>) -> f64 {
 pub(crate) fn followers(document: &Node, constants: &Constants) -> Vec<(Vec<Step>, Result<Slope, String>)> {
     let mut found = Vec::new();
     for entry in document.entries().unwrap_or_default() {
-        if !SILENT.contains(&entry.key.as_str()) {
-            below(&entry.node, &mut vec![Step::Key(entry.key.clone())], constants, &mut found);
+        if SILENT.contains(&entry.key.as_str()) {
+            continue;
+        }
+        let first = found.len();
+        below(&entry.node, &mut vec![Step::Key(entry.key.clone())], constants, &mut found);
+        if OF_ROWS.contains(&entry.key.as_str()) {
+            let why = "derivatives are those of rows and metrics that stay what they are";
+            found[first..].iter_mut().for_each(|(_, slope)| *slope = Err(why.to_owned()));
         }
     }
     found
@@ -104,11 +102,9 @@ fn below(
                 if names(text, constants) {
                     found.push((walked.clone(), slope(text, node.get("unit"), constants)));
                 }
-                return;
             }
-            for entry in
-                entries.iter().filter(|entry| !TEXTS.contains(&entry.key.as_str()) || entry.node.text().is_none())
-            {
+            let is_other = |key: &str| !TEXTS.contains(&key) && key != "expression";
+            for entry in entries.iter().filter(|entry| is_other(&entry.key) || entry.node.text().is_none()) {
                 walked.push(Step::Key(entry.key.clone()));
                 below(&entry.node, walked, constants, found);
                 walked.pop();

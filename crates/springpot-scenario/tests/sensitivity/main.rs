@@ -3,6 +3,7 @@
 mod changes;
 mod control;
 mod free;
+mod kinks;
 mod laws;
 mod steps;
 
@@ -173,9 +174,13 @@ fn compare_within(share: f64, text: &str, columns: &[&str], paths: &[(&str, f64)
     let found = rows(&asked, &told);
     let names: Vec<String> = columns.iter().map(|name| (*name).to_owned()).collect();
     for (p, (path, step)) in paths.iter().enumerate() {
-        let value = asked.sensitivity.as_ref().unwrap().parameters[p].value;
+        let mut parameters = asked.sensitivity.as_ref().unwrap().parameters.iter();
+        let value = parameters.find(|parameter| parameter.name == *path).unwrap().value;
         let at = |steps: f64| {
             let mut moved = scenario(text);
+            if text.contains("[sensitivity]") {
+                moved.set("sensitivity=").unwrap();
+            }
             moved.set(&format!("{path}={:?}", value + steps * step)).unwrap();
             moved.set("solver.rtol=1e-12").unwrap();
             rows(&plan(&moved).unwrap_or_else(|refusals| panic!("{refusals}")), &names)

@@ -96,7 +96,7 @@ impl Driver {
             own.is_some_and(|(_, signal)| signal.branch(before) != signal.branch(after) || signal.turns_at(before))
         };
         let all: Vec<Switched> = sources.iter().map(|(source, _)| *source).collect();
-        variation.switch(equations, after, switches, &all);
+        variation.switch(equations, [before, after], switches, &all);
     }
 
     /// What an event sets at a time, s, which comes later by so much, parameter by parameter.

@@ -65,6 +65,8 @@ pub(crate) enum Look {
 #[derive(Debug, Default)]
 pub(super) struct Changes {
     is_at_kink: bool,
+    /// Elements on a kink of which the step ends, where its slopes were asked for.
+    bent: Vec<usize>,
     /// An evaluation to look into a step from.
     spare: Option<Box<Evaluation>>,
 }
@@ -273,12 +275,18 @@ impl Equations {
     /// Tells elements on a kink of which the step ends, of size `h`, that it ends just before: its slopes are those of the near side. To be followed by
     /// [`Self::stand`].
     pub(crate) fn lean(&mut self, h: f64, noise: &[f64]) -> Vec<(usize, LastNode)> {
-        let Self { kinks, bank, elements, free, .. } = self;
-        if kinks.is_idle() {
-            return Vec::new();
+        let Self { kinks, bank, elements, free, changes, .. } = self;
+        changes.bent.clear();
+        if !kinks.is_idle() {
+            changes.bent = kinks.at_end(bank, |e| rounded(&elements[e], free, h, noise));
         }
-        let at_end = kinks.at_end(bank, |e| rounded(&elements[e], free, h, noise));
-        at_end.into_iter().map(|e| (e, bank.lean(e))).collect()
+        self.lean_again()
+    }
+
+    /// The same of the step that was asked about last.
+    pub(crate) fn lean_again(&mut self) -> Vec<(usize, LastNode)> {
+        let Self { bank, changes, .. } = self;
+        changes.bent.iter().map(|&e| (e, bank.lean(e))).collect()
     }
 
     /// Tells them where it ends again.

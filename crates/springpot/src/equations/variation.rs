@@ -313,6 +313,12 @@ impl Variation {
             })?;
         }
         self.accelerate(equations);
+        let is_known =
+            |own: &Self, p: usize| own.nodes[0].explicit.iter().skip(p).step_by(count).all(|x| x.is_finite());
+        for p in (0..count).filter(|p| !is_known(self, *p)).collect::<Vec<_>>() {
+            self.lose(p, 0.0, "what it changes of a force is not finite");
+        }
+        self.switch_at_start();
         self.begin_singular(equations);
         self.begin_works(equations);
         self.take_sizes();

@@ -31,6 +31,9 @@ const STENCILS: [(&[f64], &[f64]); 3] = [
     (&[0.0, -1.0, -2.0, -3.0, -4.0], &[25.0 / 12.0, -4.0, 3.0, -4.0 / 3.0, 0.25]),
 ];
 
+/// A second difference that is more than this share of the first one bends there: a row at which something switches, which moves.
+const BENDS: f64 = 0.05;
+
 /// What was found of one parameter.
 #[derive(Debug, Clone)]
 pub(super) struct Compared {
@@ -55,7 +58,8 @@ pub(super) fn compare(varied: &Varied<'_>, plan: &Plan, stop: &Stop) -> Result<V
     let columns = plan.system_at_start().columns();
     let names: Vec<String> = columns.iter().map(|column| column.name.clone()).collect();
     let (told, _) = rows(plan, stop)?;
-    let noise = noise((&columns, &told), plan, stop)?;
+    let (exact, _) = rows(&tight(plan.clone()), stop)?;
+    let noise = noise((&columns, &told, &exact), plan, stop)?;
     let values: Vec<f64> = varied.parameters.iter().map(|parameter| parameter.value).collect();
     let each = varied.parameters.iter().enumerate().map(|(p, parameter)| {
         let size = parameter.typical;
@@ -78,7 +82,7 @@ pub(super) fn compare(varied: &Varied<'_>, plan: &Plan, stop: &Stop) -> Result<V
                 };
                 let runs = plans.into_iter().map(|plan| Ok(rows(&tight(plan), stop)?.0));
                 let runs = runs.collect::<Result<Vec<_>, Untold>>()?;
-                let found = one((&names, &told, &noise), &runs, weights, (&parameter.name, step, size));
+                let found = one((&names, &told, &noise, &exact), &runs, (at, weights), (&parameter.name, step, size));
                 let is_close = found.is_close();
                 best = Some(best.filter(|best| best.off <= found.off).unwrap_or(found));
                 if is_close {
@@ -104,11 +108,14 @@ struct Noise {
 }
 
 /// Column by column, of a run that has the rows `told`.
-fn noise((columns, told): (&[Column], &[Vec<f64>]), plan: &Plan, stop: &Stop) -> Result<Vec<Noise>, Untold> {
-    let tight = tight(plan.clone());
-    let mut finer = tight.clone();
+fn noise(
+    (columns, told, tight): (&[Column], &[Vec<f64>], &[Vec<f64>]),
+    plan: &Plan,
+    stop: &Stop,
+) -> Result<Vec<Noise>, Untold> {
+    let mut finer = self::tight(plan.clone());
     finer.settings.rtol *= FINER;
-    let [(tight, _), (finer, _)] = [rows(&tight, stop)?, rows(&finer, stop)?];
+    let (finer, _) = rows(&finer, stop)?;
     let off = |k: usize, rows: &[Vec<f64>], others: &[Vec<f64>]| {
         rows.iter().zip(others).map(|(one, other)| (one[k] - other[k]).abs()).fold(0.0, f64::max)
     };
@@ -118,8 +125,8 @@ fn noise((columns, told): (&[Column], &[Vec<f64>]), plan: &Plan, stop: &Stop) ->
         // What is 0 but for rounding is rounded as what it is made of.
         let alike = columns.iter().zip(&sizes).filter(|(column, _)| column.unit == columns[k].unit);
         let largest = alike.map(|(_, size)| *size).fold(0.0, f64::max);
-        let of_column = if sizes[k] > 0.0 { off(k, told, &tight) / sizes[k] } else { 0.0 };
-        Noise { of_differences: off(k, &tight, &finer).max(4.0 * f64::EPSILON * largest), of_column }
+        let of_column = if sizes[k] > 0.0 { off(k, told, tight) / sizes[k] } else { 0.0 };
+        Noise { of_differences: off(k, tight, &finer).max(4.0 * f64::EPSILON * largest), of_column }
     };
     Ok((0..count).map(one).collect())
 }
@@ -134,9 +141,9 @@ fn tight(mut plan: Plan) -> Plan {
 
 /// The worst column of one parameter.
 fn one(
-    (names, told, noise): (&[String], &[Vec<f64>], &[Noise]),
+    (names, told, noise, exact): (&[String], &[Vec<f64>], &[Noise], &[Vec<f64>]),
     runs: &[Vec<Vec<f64>>],
-    weights: &[f64],
+    (at, weights): (&[f64], &[f64]),
     (parameter, relative, size): (&str, f64, f64),
 ) -> Compared {
     let step = relative * size;
@@ -146,9 +153,10 @@ fn one(
         let Some(column) = names.iter().position(|own| own == of) else { continue };
         let (mut off, mut largest) = (0.0f64, 0.0f64);
         for (row, own) in told.iter().enumerate() {
-            let there = runs.iter().map(|rows| rows.get(row).map_or(f64::NAN, |row| row[column]));
-            let difference: f64 = there.zip(weights).map(|(y, weight)| weight * y).sum::<f64>() / step;
-            if own[k].is_finite() && difference.is_finite() {
+            let there: Vec<f64> = runs.iter().map(|rows| rows.get(row).map_or(f64::NAN, |row| row[column])).collect();
+            let difference = there.iter().zip(weights).map(|(y, weight)| weight * y).sum::<f64>() / step;
+            let middle = exact.get(row).map_or(f64::NAN, |row| row[column]);
+            if own[k].is_finite() && difference.is_finite() && !bends(at, &there, (middle, noise[column])) {
                 off = off.max((own[k] - difference).abs());
                 largest = largest.max(own[k].abs()).max(difference.abs());
             }
@@ -161,4 +169,15 @@ fn one(
         }
     }
     found
+}
+
+/// Whether a column bends where the parameter has its value, so that it has a derivative from either side: such rows are not compared.
+fn bends(at: &[f64], there: &[f64], (middle, noise): (f64, Noise)) -> bool {
+    let of = |steps: f64| at.iter().position(|own| *own == steps).map(|k| there[k]);
+    let (Some(before), Some(after)) = (of(-1.0), of(1.0)) else { return false };
+    let wide = of(-2.0).zip(of(2.0)).map_or(0.0, |(before, after)| (before - 2.0 * middle + after).abs());
+    let narrow = (before - 2.0 * middle + after).abs();
+    // What curves does so four times as much over twice the way; what bends twice as much.
+    let least = 8.0 * OPEN * noise.of_differences;
+    narrow > least.max(BENDS * ((after - middle).abs() + (middle - before).abs())) && wide < 3.0 * narrow
 }

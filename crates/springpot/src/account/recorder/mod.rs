@@ -215,12 +215,14 @@ impl Recorder {
     pub(crate) fn commit(&mut self, cx: Context) -> Result<(), RunError> {
         let ends = [0, STAGES].map(|k| &self.evaluations[k]).map(|end| (end.t, &end.q[..], &end.v[..]));
         self.equations.take_ends(cx, ends)?;
+        let leaning = self.equations.lean_again();
         if let Some(variation) = &mut self.variation {
             variation.commit(&self.equations);
         }
         if let Some(recording) = &mut self.recording {
             recording.commit(&self.equations, self.evaluations[STAGES].t)?;
         }
+        self.equations.stand(leaning);
         let (actuators, joints) = self.work_until(1.0);
         let end = &self.evaluations[STAGES];
         let (mut stored, mut dissipated, mut supplied) = (0.0, 0.0, 0.0);

@@ -7,7 +7,7 @@ use crate::law::variation::{
 use crate::law::{Point, Response, State, When};
 
 /// How far towards the node before it the last node leans, as a share: more than a step may end behind a kink.
-const LEANS: f64 = 1e-6;
+const LEANS: f64 = 2e-7;
 
 /// The last node of a step as an element was told it, and what it answered.
 #[derive(Debug)]

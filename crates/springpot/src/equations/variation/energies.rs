@@ -9,6 +9,8 @@ use crate::law::variation::{ObservationVariation, PowersVariation};
 use crate::law::{Power, Powers};
 use crate::observe::{ElementQuantity, EnergyQuantity, Quantity};
 use crate::sensitivity::{Seed, Sensitivity};
+use crate::signal::Signal;
+use crate::system::{Action, Event, Motion, Setting};
 use serde::{Deserialize, Serialize};
 
 /// What is stored at most in an end that is just hit, in units of what it would take in the time so far.
@@ -274,6 +276,9 @@ impl Variation {
     /// values of the parameters.
     pub(super) fn work_of_actuators(&self) -> Option<Vec<f64>> {
         let mut sum = self.works.is_kept.then(|| self.works.row.1.clone())?;
+        if !self.is_driven() {
+            return Some(vec![0.0; sum.len()]);
+        }
         let [kinetic, potential] = self.mechanical(ROW);
         for (p, sum) in sum.iter_mut().enumerate() {
             *sum += kinetic[p] + potential[p] - self.works.done.origin[p];
@@ -282,6 +287,21 @@ impl Variation {
             }
         }
         Some(sum)
+    }
+
+    /// Whether anything does work on the robot besides its elements and joints: else that is 0, and no difference of what is rounded.
+    fn is_driven(&self) -> bool {
+        let system = &self.system;
+        let Motion::Forward(forward) = &system.motion else { return true };
+        let sets = |event: &Event| match &event.action {
+            Action::Set(settings) => settings.iter().any(|setting| matches!(setting, Setting::Torque { .. })),
+            _ => false,
+        };
+        let is_nothing = |signal: &Signal| signal.is_constant() == Some(0.0);
+        !system.control.is_empty()
+            || forward.has_paths()
+            || forward.forces(&system.model).any(|(_, signal)| !is_nothing(signal))
+            || system.events.iter().any(sets)
     }
 
     /// What changes of kinetic and potential energy at node `i`.

@@ -29,6 +29,8 @@ const STILL: f64 = 1e-12;
 /// What rounding makes of a stroke, as a share of it and of its coordinate.
 const ROUNDINGS: f64 = 256.0 * f64::EPSILON;
 
+const SWITCHES_AT_START: &str = "a function of time switches there, and in another way beside it";
+
 /// A switch this near is here, as a share of the time.
 const HERE: f64 = 1e-12;
 
@@ -181,11 +183,25 @@ impl Variation {
         }
     }
 
-    /// Functions of time switch at `t`, those that `switches` says.
+    /// Functions of time that switch at t = 0, where a parameter moves that.
+    pub(super) fn switch_at_start(&mut self) {
+        let by = self.by.clone();
+        for (p, parameter) in by.parameters.iter().enumerate() {
+            let moves = |seed: &Seed| match seed {
+                Seed::Switch { argument, by, .. } => argument.value(0.0) == 0.0 && by.value(0.0) != 0.0,
+                _ => false,
+            };
+            if parameter.seeds.iter().any(moves) {
+                self.lose(p, 0.0, SWITCHES_AT_START);
+            }
+        }
+    }
+
+    /// Functions of time switch between two times, `before` and `t`, those that `switches` says.
     pub(crate) fn switch(
         &mut self,
         equations: &Equations,
-        t: f64,
+        [before, t]: [f64; 2],
         switches: impl Fn(Switched) -> bool,
         sources: &[Switched],
     ) {
@@ -195,14 +211,14 @@ impl Variation {
             let (mut own, mut moved) = (Vec::new(), false);
             for seed in &parameter.seeds {
                 let Seed::Switch { of, argument, by } = seed else { continue };
-                let at = argument.at(t);
+                let at = argument.at(if before == 0.0 { 0.0 } else { t });
                 let is_here = (at.value / at.first).abs() <= HERE * t || at.first == 0.0 && at.value == 0.0;
                 if !is_here || !switches(*of) {
                     continue;
                 }
                 let own_later = -by.value(t) / at.first;
-                if t == 0.0 || !own_later.is_finite() {
-                    self.lose(p, t, "a function of time switches there, and in another way beside it");
+                if before == 0.0 || !own_later.is_finite() {
+                    self.lose(p, t, SWITCHES_AT_START);
                 } else if moved && (own_later - later[p]).abs() > ONE_TIME * own_later.abs() {
                     self.lose(p, t, "two functions of time switch at one time, which it moves apart");
                 }

@@ -9,6 +9,9 @@ use crate::signal::jet::Smooth;
 /// Longest program of a derivative, in instructions.
 const MOST: usize = 1 << 16;
 
+/// Beside what has a logarithm.
+const LEAST: f64 = 1e-150;
+
 /// Why an expression has no derivative by a number that its constants follow from.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SlopeError {
@@ -99,7 +102,13 @@ impl Expression {
             return Err(SlopeError::TooLong);
         }
         let kinks = program.iter().filter(|op| op.has_kink()).count();
-        Ok(Self { source: source.to_owned(), program, kinks })
+        let own = Self { source: source.to_owned(), program, kinks };
+        if own.program.contains(&Op::Time) {
+            return Ok(own);
+        }
+        // What does not follow from time is a number.
+        let value = own.value(0.0);
+        Ok(Self { program: vec![Op::Number(value)], kinks: 0, ..own })
     }
 }
 
@@ -149,8 +158,9 @@ fn slope_of(op: Op, operands: &[Part]) -> Result<Option<Vec<Op>>, SlopeError> {
         Power => {
             let v = &operands[1].value[..];
             let by_base = |du: &[Op]| join(&[v, u, v, &[Number(1.0), Subtract, Power, Multiply], du, &[Multiply]]);
-            let by_power =
-                |dv: &[Op]| join(&[u, v, &[Power], u, &[Op::Smooth(Smooth::Log), Multiply], dv, &[Multiply]]);
+            // So little more than the base changes no logarithm but that of 0, where the power before it is stronger.
+            let log = [Number(LEAST), Add, Op::Smooth(Smooth::Log), Multiply];
+            let by_power = |dv: &[Op]| join(&[u, v, &[Power], u, &log, dv, &[Multiply]]);
             sum(du.map(by_base), operands[1].slope.as_deref().map(by_power))
         }
         Negate => du.map(|du| join(&[du, &[Negate]])),
