@@ -38,6 +38,9 @@ pub struct Slipped<T = f64> {
     way: T,
 }
 
+/// It yields where it has gone this share of the way to that: the rest is rounding.
+const AT_YIELD: f64 = 1.0 - 1e-10;
+
 impl Jenkins {
     /// k in N/m, F_y in N.
     ///
@@ -210,7 +213,10 @@ impl Leaf for Jenkins {
         };
         push(&|k| step.stroke[k] - start - reach);
         push(&|k| step.stroke[k] - start + reach);
-        match self.slipped(start, step.stroke[1]) == start {
+        // Where it slips at first it may stick again before the first node, which then knows nothing of it.
+        let gone = step.stroke[0] - start;
+        let slips_at_first = gone.abs() >= AT_YIELD * reach && gone * step.rate[0] > 0.0;
+        match !slips_at_first && self.slipped(start, step.stroke[1]) == start {
             true => push(&|_| reach),
             false => push(&|k| step.h * step.rate[k]),
         }
