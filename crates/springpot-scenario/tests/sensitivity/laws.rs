@@ -116,3 +116,10 @@ fn inner_variables_along_a_given_motion() {
     let paths = [("element.strut.C", 2e-6), ("element.strut.R", 1.0), ("element.strut.gamma", 1.5e-5)];
     compare(&stack, &["strut.force", "strut.stored", "strut.voltage", "strut.charge", "strut.current"], &paths);
 }
+
+/// A first step that is tried again begins at the rate that it began with.
+#[test]
+fn hysteresis_from_a_moving_start() {
+    let law = "network = \"parallel(spring(k), bouc-wen(a_h, A, beta, gamma, n))\"\nparameters = { k = 60, a_h = 100, A = 1.2, beta = 20, gamma = 30, n = 1.5 }";
+    compare(&slider(law), &COLUMNS_OF_SLIDER[..3], &[("element.strut.A", 2e-3), ("element.strut.beta", 5e-2)]);
+}

@@ -43,6 +43,8 @@ impl Equations {
     /// The laws have begun.
     pub(crate) fn take_starts(&mut self) {
         self.is_singular = self.bank.has_singular();
+        // They were told no rates.
+        self.tangent.is_known = false;
     }
 
     /// Takes the samples that are due, from what is `shown` just before.
