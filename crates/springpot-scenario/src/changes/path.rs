@@ -1,12 +1,12 @@
 //! Dotted paths into a scenario: `element.strut.alpha`, `solver.rtol`, `robot.body.forearm.mass`.
 
-use crate::keys::{COMPONENT, COMPONENTS, ELEMENT, Keys, Shape};
+use crate::keys::{COMPONENT, COMPONENTS, ELEMENT, Keys, Shape, vector};
 use crate::reader::element::{files_of, kind_of, law_of};
 use crate::reader::{Context, Read};
 use crate::text::document::{Entry, Node, Value, shorten};
 use crate::text::names;
 use crate::text::quoted::toml_key;
-use crate::text::refusal::{Place, RefusalKind};
+use crate::text::refusal::{Place, RefusalKind, Source};
 use std::sync::Arc;
 use toml::de::DeValue;
 
@@ -350,15 +350,21 @@ pub(crate) fn get<'n>(document: &'n Node, target: &Target) -> Option<&'n Node> {
 /// Puts `value` where `target` leads; tables on the way are made where they lack.
 pub(crate) fn set(document: &mut Node, target: &Target, value: Node) {
     let mut node = document;
-    for step in &target.steps {
+    for (at, step) in target.steps.iter().enumerate() {
         node = match (step, &mut node.value) {
             (Step::Index(index), Value::Array(items)) => match items.get_mut(*index) {
                 Some(item) => Arc::make_mut(item),
                 None => return,
             },
+            (Step::Key(key), Value::Array(items)) => match key.parse().ok().and_then(|k: usize| items.get_mut(k)) {
+                Some(item) => Arc::make_mut(item),
+                None => return,
+            },
             (Step::Key(key), Value::Table(entries)) => {
                 let at = entries.iter().position(|entry| entry.key == *key).unwrap_or_else(|| {
-                    let node = Node { value: Value::Table(Vec::new()), place: target.place.clone(), tag: None };
+                    let table = Node { value: Value::Table(Vec::new()), place: target.place.clone(), tag: None };
+                    let node = component(&target.steps[at..]).and_then(|(vector, _)| written(vector, &target.place));
+                    let node = node.unwrap_or(table);
                     entries.push(Entry { key: key.clone(), key_place: target.place.clone(), node: Arc::new(node) });
                     entries.len() - 1
                 });
@@ -368,6 +374,20 @@ pub(crate) fn set(document: &mut Node, target: &Target, value: Node) {
         };
     }
     *node = value;
+}
+
+/// What stands for the three numbers whose component the steps lead to, where the file leaves them out, and which component that is.
+pub(crate) fn component(steps: &[Step]) -> Option<([f64; 3], usize)> {
+    let [Step::Key(name), Step::Key(component)] = steps else { return None };
+    let component = component.parse().ok().filter(|component| *component < 3)?;
+    Some((vector(name)?, component))
+}
+
+/// Three numbers as if they stood at `place`.
+fn written(vector: [f64; 3], place: &Place) -> Option<Node> {
+    let text: Arc<str> = format!("{vector:?}").into();
+    let source = Arc::new(Source { name: place.source.name.clone(), text: text.clone() });
+    Node::value(&source, 0..text.len()).ok().flatten()
 }
 
 #[cfg(test)]

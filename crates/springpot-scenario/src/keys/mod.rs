@@ -50,6 +50,15 @@ use serde_json::{Map, Value, json};
 use springpot::model::JointKind;
 use std::borrow::Cow;
 
+/// What stands for three numbers that a file leaves out, by their key; `None` where it is the key of no such.
+pub(crate) fn vector(name: &str) -> Option<[f64; 3]> {
+    let tables = [&ROBOT, &BODY, &JOINT, &END, &ANCHOR, &POSE, &START_POSE];
+    tables.into_iter().flat_map(|table| table.keys).find(|key| key.name == name).and_then(|key| match key.need {
+        Need::Vector(default) => Some(default),
+        _ => None,
+    })
+}
+
 /// A table of a scenario and its keys.
 #[derive(Debug)]
 pub(crate) struct Keys {

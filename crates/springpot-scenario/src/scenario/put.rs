@@ -49,9 +49,22 @@ pub(crate) struct Edits {
 impl Edits {
     /// Puts a text where steps lead, to what is called `name`.
     pub(crate) fn put(&mut self, document: &Node, steps: &[Step], text: String, name: &str) {
-        match place(document, steps, text) {
-            Some(edit) => self.spans.push(edit),
-            None => self.lose(name),
+        let Some((span, line)) = place(document, steps, &text) else { return self.lose(name) };
+        // Another component of three numbers that are put in already.
+        let own = path::component(&steps[steps.len().saturating_sub(2)..]).and_then(|(_, component)| {
+            let (before, numbers) = line.split_once('[')?;
+            let inserted = |(at, other): &(Range<usize>, String)| *at == span && other.starts_with(before);
+            let known = self.spans.iter().position(inserted)?;
+            let mut all: Vec<String> =
+                numbers.trim_end().trim_end_matches(']').split(", ").map(str::to_owned).collect();
+            let other = self.spans[known].1.split_once('[')?.1;
+            let other: Vec<&str> = other.trim_end().trim_end_matches(']').split(", ").collect();
+            (0..3).filter(|k| *k != component).for_each(|k| all[k] = other[k].to_owned());
+            Some((known, format!("{before}[{}]", all.join(", "))))
+        });
+        match own {
+            Some((known, line)) => self.spans[known].1 = line,
+            None => self.spans.push((span, line)),
         }
     }
 
@@ -78,7 +91,7 @@ impl Edits {
 }
 
 /// What is written where for a text where steps lead; `None` where there is no place for it.
-fn place(document: &Node, steps: &[Step], text: String) -> Option<(Range<usize>, String)> {
+fn place(document: &Node, steps: &[Step], text: &str) -> Option<(Range<usize>, String)> {
     let mut node = document;
     for (at, step) in steps.iter().enumerate() {
         let next = match (step, &node.value) {
@@ -86,10 +99,10 @@ fn place(document: &Node, steps: &[Step], text: String) -> Option<(Range<usize>,
             (Step::Key(key), Value::Table(_)) => node.get(key).map(|node| &**node),
             _ => None,
         };
-        let Some(next) = next else { return insertion(node, &steps[at..], &text) };
+        let Some(next) = next else { return insertion(node, &steps[at..], text) };
         node = next;
     }
-    Some((node.place.span.clone(), text))
+    Some((node.place.span.clone(), text.to_owned()))
 }
 
 /// The same of keys that are not yet in a table.
@@ -99,7 +112,14 @@ fn insertion(table: &Node, rest: &[Step], text: &str) -> Option<(Range<usize>, S
         Step::Index(_) => None,
     };
     let keys: Vec<String> = rest.iter().map(key).collect::<Option<_>>()?;
-    let line = format!("{} = {text}", keys.join("."));
+    let line = match path::component(rest) {
+        Some((vector, component)) => {
+            let mut numbers = vector.map(|number| format!("{number:?}"));
+            numbers[component] = text.to_owned();
+            format!("{} = [{}]", keys[0], numbers.join(", "))
+        }
+        None => format!("{} = {text}", keys.join(".")),
+    };
     let (source, span, entries) = (&table.place.source.text, &table.place.span, table.entries()?);
     if source.get(span.clone()).is_some_and(|own| own.starts_with('{') && own.ends_with('}')) {
         return Some(match entries.last() {
@@ -108,7 +128,12 @@ fn insertion(table: &Node, rest: &[Step], text: &str) -> Option<(Range<usize>, S
         });
     }
     // Behind the last of its entries that stands in the lines below its header.
-    let is_line = |node: &Node| !matches!(node.value, Value::Table(_)) || node.place.text().starts_with('{');
+    let is_line = |node: &Node| match &node.value {
+        Value::Table(_) => node.place.text().starts_with('{'),
+        // Of [[tables]] each stands below a header of its own.
+        Value::Array(items) => items.iter().all(|item| item.entries().is_none() || item.place.text().starts_with('{')),
+        _ => true,
+    };
     let ends = entries.iter().filter(|entry| is_line(&entry.node)).map(|entry| entry.node.place.span.end);
     let last = ends.max()?;
     let end = source[last..].find('\n').map_or(source.len(), |at| last + at);

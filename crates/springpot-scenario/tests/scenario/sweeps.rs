@@ -226,6 +226,39 @@ fn overrides_use_the_same_paths() {
     assert_eq!(plan.gravity, [0.0; 3]);
 }
 
+/// What a file leaves out of three numbers is its default, whichever of them is set.
+#[test]
+fn components_that_the_file_leaves_out_are_set() {
+    let text = r#"
+[[robot.body]]
+name = "arm"
+joint = { name = "q", kind = "revolute", axis = [0, 1, 0] }
+mass = 1
+[motion]
+kind = "forward"
+[time]
+end = 1
+output_step = 0.1
+"#;
+    let assignments = [
+        "robot.gravity.0=0.5",
+        "robot.body.arm.com.0=0.2",
+        "robot.body.arm.com.2='3 cm'",
+        "robot.body.arm.joint.origin.1=1",
+    ];
+    let plan = set(text, &assignments).unwrap_or_else(|refusals| panic!("{refusals}"));
+    assert_eq!(plan.gravity, [0.5, 0.0, -9.81]);
+    assert_eq!(plan.bodies[0].com, [0.2, 0.0, 0.03]);
+    assert_eq!(plan.bodies[0].joint.origin, [0.0, 1.0, 0.0]);
+    let mut scenario = parse(text).unwrap();
+    assignments.iter().for_each(|assignment| scenario.set(assignment).unwrap());
+    let written = scenario.with_values(&catalog());
+    let again = set(&written, &[]).unwrap_or_else(|refusals| panic!("{refusals}{written}"));
+    assert_eq!((again.bodies[0].com, again.bodies[0].joint.origin), ([0.2, 0.0, 0.03], [0.0, 1.0, 0.0]));
+    assert!(written.ends_with("# robot.gravity.0 was set, and has no place in this file\n"), "{written}");
+    assert!(set(text, &["robot.body.arm.com.3=1"]).is_err());
+}
+
 #[test]
 fn the_last_override_wins() {
     let plan = set(&single(), &["element.strut.alpha=0.7", "element.strut.parameters.alpha=0.2"]).unwrap();
