@@ -10,6 +10,9 @@ use springpot_scenario::Plan;
 /// What a derivative may differ by, of its largest value.
 const CLOSE: f64 = 1e-5;
 
+/// What is left open is told from so many times what is judged on.
+const TOLD: f64 = 2.0;
+
 /// Tolerances of the runs that differences are taken of, where those of the file are larger.
 const RTOL: f64 = 1e-11;
 const MEMORY_RTOL: f64 = 1e-13;
@@ -44,6 +47,9 @@ pub(super) struct Compared {
     pub(super) column: String,
     /// The step of the differences, SI.
     pub(super) step: f64,
+    /// What differences and the column itself leave open, of the largest value, of the column where that is most; 0 where it is less than is judged.
+    pub(super) open: f64,
+    pub(super) open_column: String,
 }
 
 impl Compared {
@@ -147,7 +153,9 @@ fn one(
     (parameter, relative, size): (&str, f64, f64),
 ) -> Compared {
     let step = relative * size;
-    let mut found = Compared { parameter: parameter.to_owned(), off: 0.0, column: String::new(), step };
+    let (off, open) = (0.0, 0.0);
+    let (column, open_column) = (String::new(), String::new());
+    let mut found = Compared { parameter: parameter.to_owned(), off, column, step, open, open_column };
     for (k, name) in names.iter().enumerate() {
         let Some((of, _)) = Quantity::of_derivative(name).filter(|(_, by)| *by == parameter) else { continue };
         let Some(column) = names.iter().position(|own| own == of) else { continue };
@@ -164,6 +172,11 @@ fn one(
         let Noise { of_differences, of_column } = noise[column];
         let scale = largest.max(OPEN * of_differences / (step * CLOSE)) * (BESIDE * of_column / CLOSE).max(1.0);
         let share = if off > 0.0 { off / scale } else { 0.0 };
+        // Of what is as good as 0 they tell nothing else.
+        let open = if off > 0.0 && largest > 0.0 { CLOSE * scale / largest } else { 0.0 };
+        if (TOLD * CLOSE..1.0).contains(&open) && open > found.open {
+            (found.open, found.open_column) = (open, of.to_owned());
+        }
         if found.column.is_empty() || share > found.off {
             (found.off, found.column) = (share, of.to_owned());
         }

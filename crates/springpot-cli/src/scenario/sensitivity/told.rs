@@ -91,12 +91,17 @@ impl Told<'_> {
         let words = format!("{}, {} without derivatives", count(steps, "step", "steps"), self.plain_steps);
         text.push_str(&format!("\n{}", terminal::hanging("steps    ", &words, width)));
         for one in self.compared {
-            let Compared { parameter, off, column, step, .. } = one;
+            let Compared { parameter, off, column, step, open, open_column } = one;
             let verdict = if one.is_close() { "agrees" } else { "DIFFERS" };
             let column = if column.is_empty() { String::new() } else { format!(", most in {column}") };
             let (off, step) = (rough(*off), rough(*step));
-            let words =
-                format!("{parameter} {verdict}: {off} of the largest value{column}; differences in steps of {step}");
+            let told = match *open {
+                0.0 => String::new(),
+                open => format!(", which tell d({open_column}) no better than {}", rough(open)),
+            };
+            let words = format!(
+                "{parameter} {verdict}: {off} of the largest value{column}; differences in steps of {step}{told}"
+            );
             text.push_str(&terminal::hanging("check    ", &words, width));
         }
         text
