@@ -5,6 +5,8 @@ use crate::plan::Plan;
 use springpot::actuation::{Drive, Forward};
 use springpot::dynamics::Kinematics;
 use springpot::model::{Anchor, BodySpec, JointSpec, Model, ModelBuilder, ModelError, Parent};
+use springpot::motion::{JointPath, Trajectory};
+use springpot::signal::Signal;
 use springpot::spatial::{Rotation, Vec3};
 use springpot::system::{Motion, System};
 use std::sync::Arc;
@@ -81,15 +83,16 @@ impl Extended {
     /// The system of a plan, extended by `virtuals`.
     ///
     /// # Errors
-    /// A motion that is given in advance; a robot that cannot be built so.
+    /// A motion that is solved for a path of the gripper; a robot that cannot be built so.
     pub(super) fn new(plan: &Plan, base: &System, virtuals: Vec<Virtual>) -> Result<Self, String> {
         if virtuals.is_empty() {
             let (bodies, own) = ((0..plan.bodies.len()).collect(), (0..plan.model.nv()).collect());
             return Ok(Self { virtuals, velocities: Vec::new(), bodies, own, system: Arc::new(base.clone()) });
         }
-        let Motion::Forward(forward) = &base.motion else {
-            return Err("no derivative by geometry is known of motions that are given in advance".to_owned());
-        };
+        let is_solved = |path: &Trajectory| !matches!(path, Trajectory::Prescribed(_));
+        if matches!(&base.motion, Motion::Given(path) if is_solved(path)) {
+            return Err("no derivative by geometry is known of joints that follow a path of the gripper".to_owned());
+        }
         let mut made = Bodies { virtuals, specs: Vec::new() };
         let mut bodies = Vec::with_capacity(plan.bodies.len());
         let moved = |bodies: &[usize], parent: Parent| match parent {
@@ -131,7 +134,7 @@ impl Extended {
         let elements = elements.map(|(plan, measure)| springpot::elements::Element { measure, ..plan.element.clone() });
         let system = System {
             elements: elements.collect(),
-            motion: extended_motion(forward, &plan.model, &model).into(),
+            motion: extended_motion(&base.motion, &plan.model, &model),
             gripper: gripper.map(|anchor| model.resolve(&anchor)).transpose().map_err(|error| error.to_string())?,
             model: model.clone(),
             sensitivity: None,
@@ -192,15 +195,28 @@ fn build(plan: &Plan, bodies: &[BodySpec]) -> Result<Model, ModelError> {
 }
 
 /// The motion of the joints that the robot has, the others locked at 0.
-fn extended_motion(forward: &Forward, own: &Model, model: &Model) -> Forward {
+fn extended_motion(motion: &Motion, own: &Model, model: &Model) -> Motion {
+    let forward = match motion {
+        Motion::Forward(forward) => forward,
+        Motion::Given(path) => {
+            let Trajectory::Prescribed(paths) = &**path else { return motion.clone() };
+            let still = || JointPath::Coordinate(Signal::constant(0.0));
+            let path = |j: usize| own_place(own, model, j).map_or_else(still, |(_, at)| paths[at].clone());
+            return Motion::Given(Arc::new(Trajectory::Prescribed(model.own_joints().map(path).collect())));
+        }
+    };
     let (mut q, mut v) = (model.neutral(), vec![0.0; model.nv()]);
     let drives = model.own_joints().map(|j| {
-        let same = own.own_joints().zip(&forward.drives).find(|(i, _)| own.joint_names()[*i] == model.joint_names()[j]);
-        let Some((i, drive)) = same else { return Drive::Locked };
+        let Some((i, at)) = own_place(own, model, j) else { return Drive::Locked };
         q[model.q_range(j)].copy_from_slice(&forward.q[own.q_range(i)]);
         v[model.v_range(j)].copy_from_slice(&forward.v[own.v_range(i)]);
-        drive.clone()
+        forward.drives[at].clone()
     });
     let drives = drives.collect();
-    Forward { q, v, drives }
+    Forward { q, v, drives }.into()
+}
+
+/// Which joint of the robot joint `j` of the extended one is, and where it stands among those with coordinates.
+fn own_place(own: &Model, model: &Model, j: usize) -> Option<(usize, usize)> {
+    own.own_joints().zip(0..).find(|(i, _)| own.joint_names()[*i] == model.joint_names()[j])
 }

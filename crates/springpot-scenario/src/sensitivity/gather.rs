@@ -160,6 +160,8 @@ pub(super) struct Gather {
     /// By element, the slopes of the numbers of its heat.
     heats: BTreeMap<usize, Heat>,
     pub(super) rest: Vec<(usize, f64)>,
+    /// For how long elements were held before t = 0.
+    pub(super) age: Vec<(usize, f64)>,
     inputs: Vec<(usize, usize, Signal)>,
     drives: Vec<(usize, Signal)>,
     switches: Vec<(Switched, MovedJump)>,
@@ -296,6 +298,7 @@ impl Gather {
             seeds.extend(stop.map(|(element, stop)| Seed::Law { element, law: Network::leaf(stop) }));
         }
         seeds.extend(self.rest.iter().map(|&(element, by)| Seed::Rest { element, by }));
+        seeds.extend(self.age.iter().map(|&(element, by)| Seed::Age { element, by }));
         let rests = plan.elements.iter().enumerate().filter(|(_, element)| element.rest_at_start);
         for (element, _) in rests.filter(|_| start.iter().any(|by| *by != 0.0)) {
             let by = extended.gradient(element).iter().zip(&start).map(|(g, by)| g * by).sum();

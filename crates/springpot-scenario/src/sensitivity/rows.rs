@@ -103,6 +103,7 @@ static ROWS: &[Row] = &[
     row(&[Key("element"), Item, Key("bushing"), Any, Key("expansion"), Any], Nothing, heat),
     row(&[Key("element"), Item, Key("rest_length")], Nothing, rest),
     row(&[Key("element"), Item, Key("rest")], Zero, rest),
+    row(&[Key("element"), Item, Key("past"), Key("held")], Nothing, age),
     row(&[Key("element"), Item, Key("bushing"), Any, Key("rest")], Zero, rest),
     row(&[Key("element"), Item, Key("from"), Key("point"), Item], Nothing, end_point),
     row(&[Key("element"), Item, Key("to"), Key("point"), Item], Nothing, end_point),
@@ -427,6 +428,13 @@ pub(super) fn exponent(scene: &Scene<'_>, steps: &[Step], name: &str) -> Option<
 fn rest(gather: &mut Gather, scene: &Scene<'_>, steps: &[Step], slope: Slope) -> Moved {
     let by = slope.number()?;
     gather.rest.extend(elements(scene, steps).into_iter().map(|e| (e, by)));
+    Ok(())
+}
+
+/// For how long elements were held.
+fn age(gather: &mut Gather, scene: &Scene<'_>, steps: &[Step], slope: Slope) -> Moved {
+    let by = slope.number()?;
+    gather.age.extend(elements(scene, steps).into_iter().map(|e| (e, by)));
     Ok(())
 }
 

@@ -5,6 +5,7 @@ mod control;
 mod free;
 mod kinks;
 mod laws;
+mod pasts;
 mod steps;
 
 use springpot::Simulation;

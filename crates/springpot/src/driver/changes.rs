@@ -53,11 +53,11 @@ impl Driver {
     pub(super) fn settle_variation(&mut self, before: [&[f64]; 2], is_own: bool) -> Result<(), RunError> {
         let Recorder { evaluations: [at, ..], equations, variation, recording, .. } = &mut self.recorder;
         if let Some(recording) = recording {
-            let a = self.solver.stepper().starts_with().unwrap_or(&at.a);
+            let a = self.solver.stepper().starts_with().map_or(&at.a[..], |[_, a]| a);
             recording.settle(equations, Node { t: at.t, q: &at.q, v: &at.v, a }, [before, [&at.v, &at.a]], is_own)?;
         }
         if let Some(variation) = variation {
-            let a = self.solver.stepper().starts_with().unwrap_or(&at.a);
+            let a = self.solver.stepper().starts_with().map_or(&at.a[..], |[_, a]| a);
             variation.settle(equations, Node { t: at.t, q: &at.q, v: &at.v, a }, [before, [&at.v, &at.a]], is_own)?;
         }
         Ok(())

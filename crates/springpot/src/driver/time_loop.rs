@@ -6,6 +6,7 @@ use super::roots::try_step;
 use crate::account::recorder::Recorder;
 use crate::collocation::{RADAU_NODES, STAGES};
 use crate::dynamics::Kinematics;
+use crate::elements::MemoryRange;
 use crate::equations::context::{Context, Held};
 use crate::equations::control::{Eye, Sampler};
 use crate::equations::{Node, Recording, Variation, VariationState};
@@ -126,13 +127,14 @@ impl Driver {
     /// What parameters change at t = 0, where any are asked for.
     fn begin_variation(&mut self, cx: Context) -> Result<(), RunError> {
         let Self { sampler, recorder, .. } = self;
-        let Recorder { evaluations: [at, ..], equations, variation, recording, .. } = recorder;
+        let Recorder { evaluations: [at, ..], equations, variation, recording, settings, takes_elements_work, .. } =
+            recorder;
         let Some(by) = &cx.system.sensitivity else { return Ok(()) };
         if let Some(quantities) = &by.adjoint {
             if !self.solver.stepper().is_recorded() {
                 return Err(SensitivityError::Backwards { what: "steps of one size, or a given motion".into() }.into());
             }
-            let a = self.solver.stepper().starts_with().unwrap_or(&at.a);
+            let a = self.solver.stepper().starts_with().map_or(&at.a[..], |[_, a]| a);
             let start = Node { t: at.t, q: &at.q, v: &at.v, a };
             let mut begun = Recording::begin(cx.system, by, quantities, equations, start)?;
             // Where the memories are built anew.
@@ -143,8 +145,10 @@ impl Driver {
         let has_fixed_steps = self.solver.stepper().fixed_step().is_some();
         let mut begun = Variation::new(cx.system, by, equations, has_fixed_steps)?;
         begun.hold(sampler.as_ref().and_then(|sampler| sampler.held_changes()));
-        let a = self.solver.stepper().starts_with().unwrap_or(&at.a);
-        begun.begin(equations, Node { t: at.t, q: &at.q, v: &at.v, a })?;
+        let [v, a] = self.solver.stepper().starts_with().unwrap_or([&at.v, &at.a]);
+        let range = MemoryRange { tolerance: settings.memory_rtol, shortest: 0.0, horizon: settings.end };
+        let start = [Node { t: at.t, q: &at.q, v: &at.v, a: &at.a }, Node { t: at.t, q: &at.q, v, a }];
+        begun.begin(cx.system, equations, start, (range, *takes_elements_work))?;
         *variation = Some(Box::new(begun));
         Ok(())
     }
@@ -157,8 +161,8 @@ impl Driver {
         let has_fixed_steps = self.solver.stepper().fixed_step().is_some();
         let mut loaded = Variation::new(cx.system, by, equations, has_fixed_steps)?;
         loaded.hold(sampler.as_ref().and_then(|sampler| sampler.held_changes()));
-        let a = self.solver.stepper().starts_with().unwrap_or(&at.a);
-        let start = Node { t: at.t, q: &at.q, v: &at.v, a };
+        let [v, a] = self.solver.stepper().starts_with().unwrap_or([&at.v, &at.a]);
+        let start = Node { t: at.t, q: &at.q, v, a };
         if !state.is_some_and(|state| loaded.load(state, equations, start)) {
             return Err(RunError::OtherRun);
         }
@@ -434,6 +438,10 @@ impl Driver {
                         self.recorder.begin(cx)?;
                         self.recorder.open(cx, size)?;
                         self.begin_variation(cx)?;
+                        let Recorder { equations, variation, .. } = &mut self.recorder;
+                        if variation.as_ref().is_some_and(|variation| variation.shares_in_steps()) {
+                            equations.tell_starts(cx);
+                        }
                         self.planned = size;
                     }
                 }

@@ -4,7 +4,9 @@ use super::bank::MemoryRange;
 use super::measure::Measure;
 use crate::fractional::KernelError;
 use crate::fractional::scheme::Scheme;
-use crate::law::{Derivative, Entry, InputValue, Network, Past, RuleError, Start, State, past};
+use crate::law::past::{self, Begun, PastVariation};
+use crate::law::variation::LawVariation;
+use crate::law::{Derivative, Entry, InputValue, Network, Past, RuleError, Start, State};
 use crate::signal::Signal;
 use std::sync::Arc;
 
@@ -140,6 +142,42 @@ impl Element {
     pub(crate) fn settled(&self, start: &Start, state: State, range: MemoryRange) -> Result<State, KernelError> {
         let MemoryRange { tolerance, horizon, .. } = self.memory_range(range, start.inputs);
         past::settle(&self.law, start, state, tolerance, horizon)
+    }
+
+    /// What parameters change of the state `state` that a run begins with ([`Self::begin_within`], or [`Self::settled`] where `settles`), of the law as
+    /// it is `of`; `by` is what changes of its past.
+    ///
+    /// # Errors
+    /// What no derivative is known of.
+    pub(crate) fn variation(
+        &self,
+        of: Begun,
+        by: &PastVariation,
+        state: &State,
+        range: MemoryRange,
+        settles: bool,
+    ) -> Result<LawVariation, String> {
+        let MemoryRange { tolerance, horizon, .. } = self.memory_range(range, of.start.inputs);
+        let is_of_derivative = self.past.is_of_derivative();
+        let settled = match settles && is_of_derivative && self.derivative == Derivative::RiemannLiouville {
+            true => past::settled(of, state, horizon)?,
+            false => None,
+        };
+        match settled {
+            Some(settled) => {
+                let start = self.past.variation(of, by, state.seen_at(0.0), [tolerance, horizon]);
+                // What has no derivative at t = 0 itself is infinite there.
+                let start = start.unwrap_or_else(|_| settled.clone().lost());
+                Ok(settled.behind(start))
+            }
+            None => self.past.variation(of, by, state, [tolerance, horizon]),
+        }
+    }
+
+    /// What parameters change of the impulse of [`Self::jolt`]; nothing where there is none, be x(0) what it may.
+    pub(crate) fn jolt_variation(&self, of: Begun, horizon: f64) -> Option<(f64, Vec<f64>)> {
+        let jumps = self.past.is_of_derivative() && self.derivative == Derivative::RiemannLiouville;
+        past::jolted(of, horizon).filter(|_| jumps)
     }
 
     /// What a jump at t = 0 does that [`Self::settled`] does not tell ([`past::jolt`]).

@@ -6,6 +6,7 @@ mod energies;
 mod found;
 mod inertias;
 mod one_node;
+mod past;
 mod rows;
 mod saltation;
 mod singular;
@@ -21,9 +22,10 @@ use crate::collocation::STAGES;
 use crate::dynamics::{
     Kinematics, RneaDerivatives, Workspace, add_gravity_effort, add_inertia_efforts, rnea_derivatives_of_moving,
 };
-use crate::elements::Reading;
+use crate::elements::{MemoryRange, Reading};
+use crate::law::past::Begun;
 use crate::law::variation::{LawVariation, ObservationVariation, PointVariation, StepVariation};
-use crate::law::{Derivative, Network, Response};
+use crate::law::{Network, Response, Start};
 use crate::model::{FrictionLaw, Model};
 use crate::sensitivity::{Seed, Sensitivity, SensitivityError};
 use crate::system::{Motion, System};
@@ -68,6 +70,8 @@ pub(crate) struct Variation {
     control: Option<Box<ControlVariation>>,
     /// What is known of steps of one size, where it takes such.
     one_size: Option<OneSize>,
+    /// Of velocities at t = 0 before an impulse there.
+    before_kick: Option<Vec<f64>>,
 }
 
 /// Coordinates of the extended robot.
@@ -238,6 +242,7 @@ impl Variation {
             system: extended.clone(),
             control,
             one_size,
+            before_kick: None,
         })
     }
 
@@ -256,11 +261,18 @@ impl Variation {
         velocities.iter().map(|&k| self.own_v[k]).collect()
     }
 
-    /// What changes at t = 0, of a run whose elements have begun and whose robot is at `start`.
+    /// What changes at t = 0, of a run whose elements have begun and whose robot is at `start`, and was `before` an impulse at t = 0. The memories of
+    /// elements are made for this range; `settles`: jumps inside series are shared out by all of them ([`Element::settled`]).
     ///
     /// # Errors
-    /// A leaf that has no derivatives.
-    pub(crate) fn begin(&mut self, equations: &Equations, start: Node) -> Result<(), SensitivityError> {
+    /// A leaf that has no derivatives; a past of which none are known.
+    pub(crate) fn begin(
+        &mut self,
+        run: &System,
+        equations: &Equations,
+        [before, start]: [Node; 2],
+        (range, settles): (MemoryRange, bool),
+    ) -> Result<(), SensitivityError> {
         let (by, count) = (self.by.clone(), self.count());
         let node = &mut self.nodes[0];
         for (p, parameter) in by.parameters.iter().enumerate() {
@@ -282,7 +294,8 @@ impl Variation {
             control.begin(run, [&node.q, &node.v])?;
             control.push_at(0, None, (run, false), [&node.q, &node.v]);
         }
-        for (e, element) in self.system.elements.iter().enumerate() {
+        let (system, mut jolts) = (self.system.clone(), Vec::new());
+        for (e, element) in system.elements.iter().enumerate() {
             let law = |seed: &Seed| match seed {
                 Seed::Law { element, law } if *element == e => Some(law.clone()),
                 _ => None,
@@ -294,24 +307,23 @@ impl Variation {
                     what: format!("\"{}\", which has a named scheme", element.name),
                 });
             };
-            let keeps = element.law.has_inner_variables() || !state.memories().is_empty();
-            if keeps && !element.past.is_of_derivative() {
-                return Err(SensitivityError::Unknown { what: format!("the past of \"{}\"", element.name) });
-            }
             let at = equations.bank.point(e, 0);
+            let past = self.past_variation(run, e)?;
             let own = &self.elements[e];
-            // What jumps there is shared out by the parts of a series on no scale of time.
-            let jumps = at.stroke != 0.0 || own.stroke[..count].iter().any(|change| *change != 0.0);
-            if jumps && element.derivative == Derivative::RiemannLiouville && element.law.has_memories_in_series() {
-                let what = format!("the jump at t = 0 of springpots in series in \"{}\"", element.name);
-                return Err(SensitivityError::Unknown { what });
-            }
             let told = at_start(count, [&own.stroke, &own.rate], &own.inputs);
-            let begun = LawVariation::begin(&element.law, &laws, &at, &told, state);
-            self.elements[e].law = begun.map_err(|leaf| SensitivityError::Unknown {
-                what: format!("{leaf} in the law of \"{}\"", element.name),
+            let of = element.start(element.rest + at.stroke, at.inputs);
+            let jump = if of.jump == 0.0 { 0.0 } else { at.stroke };
+            let of = Begun { law: &element.law, by: &laws, start: Start { stroke: at.stroke, jump, ..of }, told };
+            let jolt =
+                (!settles && self.one_size.is_none()).then(|| element.jolt_variation(of, range.horizon)).flatten();
+            let begun = element.variation(of, &past, state, range, settles || jolt.is_some());
+            let law = begun.map_err(|what| SensitivityError::Unknown {
+                what: format!("{what} in the law of \"{}\"", element.name),
             })?;
+            self.elements[e].law = law;
+            jolts.push(jolt);
         }
+        self.kick(equations, &jolts, [before, start]);
         self.accelerate(equations);
         let is_known =
             |own: &Self, p: usize| own.nodes[0].explicit.iter().skip(p).step_by(count).all(|x| x.is_finite());

@@ -15,7 +15,7 @@ pub use series::Series;
 use super::harmonic::Sine;
 use super::heat::Heat;
 use super::leaf::{Clock, Coefficient, Dashpot, Free, Guard, Holds, Jenkins, Leaf, Source, Spring, Springpot, When};
-use super::past::Recalled;
+use super::past::{Recalled, RecalledVariation};
 use super::rule::RuleError;
 use super::state::{State, StateRef, StateSize};
 use super::step::{InputValue, LeafState, LocalError, Observation, Point, Powers, Response, Start, Step, Term};
@@ -27,7 +27,7 @@ use crate::dual::Dual;
 use crate::fractional::Kind as Derivative;
 use crate::fractional::{KernelError, MemoryTangent};
 use num_complex::Complex64;
-use part::Onset;
+use part::{Onset, asymptote_by};
 use std::sync::Arc;
 use vary::Vary;
 
@@ -293,6 +293,18 @@ impl Network {
         self.ask().begin_variation(at, &mut state.view(), told, &mut own.view_mut());
     }
 
+    /// Puts what parameters change of a stroke before t = 0 into what they change of a state that recalls it.
+    pub(super) fn recall_variation(
+        &self,
+        stroke: (&Recalled, &RecalledVariation),
+        at: (&Point, &PointVariation),
+        laws: &[&Self],
+        state: &State,
+        own: &mut LawVariation,
+    ) -> Result<(), String> {
+        self.ask().recall_variation(stroke, at, laws, &mut state.view(), &mut own.view_mut())
+    }
+
     /// How fast its inner variables change, in their order; `None` where somebody does not tell.
     pub(crate) fn rates(&self, at: &Point, state: &State) -> Option<Vec<f64>> {
         let mut rates = Vec::new();
@@ -309,6 +321,7 @@ impl Network {
     /// Takes what changes of an accepted step, which is not in the state yet, into what changes of that.
     pub fn commit_variation(&self, step: &Step, state: &State, told: &StepVariation, own: &mut LawVariation) {
         self.ask().commit_variation(step, &mut state.view(), told, &mut own.view_mut());
+        own.leave_start();
     }
 
     /// Hands over how well a step knows what parameters change of its inner variables, each with its number ([`super::Leaf::vary_errors`]).
@@ -547,6 +560,17 @@ impl Network {
         if order == 1.0 { coefficient } else { 0.0 }
     }
 
+    /// The same, with what the parameter that numbers and inputs carry changes of it; `None` where a leaf does not know.
+    pub(super) fn dashed_by(&self, at: &Point<Dual>) -> Option<[f64; 2]> {
+        let (Term { coefficient, order }, slope) = asymptote_by(self, at, Onset::Short)?;
+        Some(if order == 1.0 { [coefficient, slope] } else { [0.0; 2] })
+    }
+
+    /// [`Self::modulus_slope`] where the inputs carry the parameter too.
+    pub(super) fn modulus_by(&self, at: &Point<Dual>, s: [Complex64; 2]) -> Option<[Complex64; 2]> {
+        self.ask().modulus_slope(at, s)
+    }
+
     /// Hands over s and alpha of every share s·t^−alpha of a singular start in F.
     pub fn for_each_singularity(&self, inputs: &[InputValue], state: &State, take: &mut dyn FnMut(Term)) {
         if state.is_singular() {
@@ -620,7 +644,7 @@ impl Network {
     /// [`Self::modulus`] at s, and what it changes by with the parameter that the numbers of its leaves carry while s changes as the second
     /// number says; `None` where a leaf does not know.
     pub fn modulus_slope(&self, at: &Point, s: [Complex64; 2]) -> Option<[Complex64; 2]> {
-        self.ask().modulus_slope(at, s)
+        self.ask().modulus_slope(&at.with_inputs(&at.inputs_as_numbers()), s)
     }
 
     /// K' and K'', N/m, of the first harmonic of F under x = x_0 + A·sin ωt since ever, x_0 the stroke of `at`, A > 0 the `amplitude`, m, ω > 0 `omega`,

@@ -1,5 +1,11 @@
 //! What happened to a law before t = 0.
 
+mod variation;
+
+pub(crate) use variation::{Begun, PastVariation};
+pub(super) use variation::{ByHeat, RecalledVariation, recall as recall_variation};
+pub(crate) use variation::{jolted, settled};
+
 use super::network::Network;
 use super::state::State;
 use super::step::{Course, InputValue, Point, Start, Step};
@@ -152,8 +158,13 @@ impl Recalled {
         self.mean + self.sum(|s| (s * t).exp())
     }
 
-    /// Where one that is periodic turned round in the last period, in order, and at last where it is at t = 0.
+    /// Where one that is periodic was when it turned round in the last period, in order, and at last where it is at t = 0.
     pub(super) fn turns(&self) -> Vec<f64> {
+        self.times_of_turns().into_iter().map(|t| self.stroke(t)).collect()
+    }
+
+    /// When it turned, and 0.
+    fn times_of_turns(&self) -> Vec<f64> {
         let period = self.last / LAST;
         let largest = self.exponentials.iter().fold(0.0f64, |largest, [_, x]| largest.max(x.norm()));
         let heard = self.exponentials.iter().filter(|[_, x]| x.norm() > UNHEARD * largest);
@@ -171,11 +182,11 @@ impl Recalled {
                     let middle = 0.5 * (low + high);
                     if (rate(middle) > 0.0) == (before > 0.0) { low = middle } else { high = middle }
                 }
-                turns.push(self.stroke(high));
+                turns.push(high);
             }
             before = here;
         }
-        turns.push(self.stroke(0.0));
+        turns.push(0.0);
         turns
     }
 
@@ -357,6 +368,14 @@ fn recalled(
 
 /// Takes a law that was just stretched through the time until t = 0.
 fn relax(law: &Network, start: &Start, age: f64, state: &mut State) {
+    each_of_relaxation(start, age, &mut |step| {
+        law.prepare(step, state);
+        law.commit(step, state);
+    });
+}
+
+/// The steps of that.
+fn each_of_relaxation(start: &Start, age: f64, take: &mut dyn FnMut(&Step)) {
     let nodes = Nodes::Radau;
     let strokes = vec![start.stroke; nodes.count() + 1];
     let (rates, inputs) = (vec![0.0; strokes.len()], start.inputs.repeat(strokes.len()));
@@ -375,8 +394,7 @@ fn relax(law: &Network, start: &Start, age: f64, state: &mut State) {
             resolution: 4.0 * f64::EPSILON * start.stroke.abs(),
             course: Course::Sought,
         };
-        law.prepare(&step, state);
-        law.commit(&step, state);
+        take(&step);
         t = if t + h < age { t + h } else { age };
     }
 }

@@ -101,6 +101,11 @@ impl State {
         self.variables.extend(other.variables);
     }
 
+    /// That of a part which has all but the first `variables`.
+    pub(super) fn without(&self, variables: usize) -> Self {
+        Self { memories: self.memories.clone(), variables: self.variables[variables..].to_vec(), ..Self::default() }
+    }
+
     /// The state at time t between two steps.
     pub(crate) fn seen_at(&self, t: f64) -> &Self {
         self.at_start.as_deref().filter(|_| t == 0.0).unwrap_or(self)

@@ -33,6 +33,24 @@ impl Point<'_> {
         let number = |input: &InputValue| InputValue { value: input.value.into(), rate: input.rate.into() };
         self.inputs.iter().map(number).collect()
     }
+
+    /// The same point where its inputs change as these do.
+    pub(super) fn with_inputs<'a>(&self, inputs: &'a [InputValue<Dual>]) -> Point<'a, Dual> {
+        Point { t: self.t, stroke: self.stroke.into(), rate: self.rate.into(), inputs }
+    }
+}
+
+impl Point<'_, Dual> {
+    /// Its inputs without their derivatives.
+    pub(super) fn values_of_inputs(&self) -> Vec<InputValue> {
+        let number = |input: &InputValue<Dual>| InputValue { value: input.value.value, rate: input.rate.value };
+        self.inputs.iter().map(number).collect()
+    }
+
+    /// The same point without derivatives, under these inputs.
+    pub(super) fn without_derivatives<'a>(&self, inputs: &'a [InputValue]) -> Point<'a> {
+        Point { t: self.t, stroke: self.stroke.value, rate: self.rate.value, inputs }
+    }
 }
 
 /// One step: its data at the start (index 0) and at the nodes (1 … s), as [`Point`] has them.

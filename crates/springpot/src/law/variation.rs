@@ -91,6 +91,8 @@ pub struct LawVariation {
     memories: Vec<MemoryTangent>,
     /// Of its inner variables.
     variables: Vec<f64>,
+    /// The same at t = 0 itself, where the state there is another one.
+    at_start: Option<Box<Self>>,
 }
 
 /// The share of one part of a law.
@@ -153,7 +155,7 @@ impl LawVariation {
             }
         }
         let variables = vec![0.0; state.size().variables * count];
-        let mut begun = Self { count, numbers, memories: Vec::new(), variables };
+        let mut begun = Self { count, numbers, memories: Vec::new(), variables, at_start: None };
         let mut memories = Vec::new();
         law.begin_memories(state, &begun, &mut memories).map_err(|error| error.to_string())?;
         begun.memories = memories;
@@ -167,6 +169,33 @@ impl LawVariation {
         for (block, (before, after)) in blocks.zip(before.iter().zip(after)) {
             block.iter_mut().zip(moved).for_each(|(own, moved)| *own += (before - after) * moved);
         }
+    }
+
+    /// The same where nothing is known of it.
+    pub(crate) fn lost(mut self) -> Self {
+        self.numbers.fill(f64::NAN);
+        self
+    }
+
+    /// The same, but at t = 0 itself as `start` has it.
+    pub(crate) fn behind(self, start: Self) -> Self {
+        Self { at_start: Some(Box::new(start)), ..self }
+    }
+
+    /// What changes at time t between two steps.
+    pub(crate) fn seen_at(&self, t: f64) -> &Self {
+        self.at_start.as_deref().filter(|_| t == 0.0).unwrap_or(self)
+    }
+
+    /// Goes on behind t = 0.
+    pub(super) fn leave_start(&mut self) {
+        self.at_start = None;
+    }
+
+    /// Takes the place of all but the first `variables`.
+    pub(super) fn take_inner(&mut self, inner: Self, variables: usize) {
+        self.memories = inner.memories;
+        self.variables[variables * self.count..].copy_from_slice(&inner.variables);
     }
 
     /// Of the inner variables of the law, a block for each.

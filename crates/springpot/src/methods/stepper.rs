@@ -137,8 +137,9 @@ pub(crate) trait Stepper: std::fmt::Debug + Send + Sync {
         recorder.variation.iter_mut().for_each(|variation| variation.take_start(ROW));
     }
 
-    /// The accelerations that the next step starts with, where those of rows are others: without the share of what is infinite there.
-    fn starts_with(&self) -> Option<&[f64]> {
+    /// The velocities and accelerations that the next step starts with, where those of rows are others: behind an impulse at t = 0, and without the
+    /// share of what is infinite there.
+    fn starts_with(&self) -> Option<[&[f64]; 2]> {
         None
     }
 

@@ -105,6 +105,13 @@ pub enum Seed {
         /// By how much.
         by: f64,
     },
+    /// For how long an element was held before t = 0 ([`crate::law::Past::Held`]).
+    Age {
+        /// Which element.
+        element: usize,
+        /// By how much, s.
+        by: f64,
+    },
     /// An input of an element.
     Input {
         /// Which element.

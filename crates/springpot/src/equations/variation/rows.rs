@@ -57,6 +57,9 @@ impl Variation {
     pub(crate) fn read(&mut self, equations: &Equations, theta: Option<f64>, snapshot: &Snapshot) {
         let evaluation = &snapshot.evaluation;
         let force: Vec<f64> = (0..self.elements.len()).map(|e| snapshot.force(e)).collect();
+        if let Some(before) = self.before_kick.as_ref().filter(|_| evaluation.t == 0.0) {
+            self.nodes[ROW].v.copy_from_slice(before);
+        }
         self.move_row(equations, theta, snapshot);
         self.see(
             equations,
@@ -89,7 +92,7 @@ impl Variation {
         let told = own.told(count, i, theta);
         match theta {
             Some(theta) => equations.bank.vary_at(e, (theta, at), &told, &own.law, &mut sum),
-            None => equations.bank.vary_now(e, at, &told, &own.law, &mut sum),
+            None => equations.bank.vary_row(e, at, &told, &own.law, &mut sum),
         }
         if self.singular.is_there {
             let [change, ..] = self.singular_at(equations, (e, i), at.t, at);

@@ -89,7 +89,7 @@ impl MemoryTangent {
     }
 
     fn add_mean_history(&self, past: &History, h: f64, out: &mut [f64]) {
-        if past.is_empty() {
+        if past.is_empty() && !self.is_recalled {
             return;
         }
         let at = past.lag(h);

@@ -172,6 +172,8 @@ pub struct MemoryTangent {
     piece: Columns,
     /// Where α moves.
     by_order: Option<ByOrder>,
+    /// Whether the modes begin with a past, be that of the memory none.
+    is_recalled: bool,
     /// Columns that stand for its past, where it is to be told what that does.
     #[serde(skip)]
     ports: Option<Ports>,
@@ -205,6 +207,7 @@ impl MemoryTangent {
             modes: Columns::new(parameters, 0),
             piece: Columns::new(parameters, 4),
             by_order: None,
+            is_recalled: false,
             ports: None,
         };
         tangent.jump_at_start(memory, seeds.jump);
@@ -243,6 +246,11 @@ impl MemoryTangent {
         self.modes.rows() > 0 || self.by_order.is_some()
     }
 
+    /// ∂α/∂θ, P numbers.
+    pub(crate) fn of_order(&self) -> &[f64] {
+        &self.alpha
+    }
+
     /// Number of parameters P.
     pub fn parameters(&self) -> usize {
         self.parameters
@@ -276,7 +284,7 @@ impl MemoryTangent {
 
     /// Adds what Σ_k w_k e^{−λ_k τ} z_k moves with its z, at Q lags, Q rows of P.
     fn add_histories<const Q: usize>(&self, past: &History, lags: [f64; Q], out: &mut [f64]) {
-        if past.is_empty() {
+        if past.is_empty() && !self.is_recalled {
             return;
         }
         if let Some(ports) = &self.ports {
@@ -304,7 +312,7 @@ impl MemoryTangent {
             rows,
         ));
         for (q, lag) in lags.into_iter().enumerate() {
-            if past.kernel().missing(lag) > 0 {
+            if past.kernel().missing(lag) > 0 && !past.is_empty() {
                 self.add_missing(past, lag, &mut out[q * self.parameters..][..self.parameters]);
             }
         }
@@ -329,6 +337,8 @@ impl MemoryTangent {
         if memory.alpha() == 0.0 {
             self.origin.copy_from_slice(past.delta_mean);
         }
+        // What jumped is a past like any other.
+        self.jumps.clear();
         let Some(history) = memory.past() else { return };
         for (k, lambda) in history.kernel().lambda.iter().enumerate() {
             (past.delta_mode)(*lambda, self.modes.row_mut(k));
@@ -337,6 +347,7 @@ impl MemoryTangent {
             self.piece.row_mut(p).copy_from_slice(&past.delta_last[p * self.parameters..][..self.parameters]);
         }
         self.now.copy_from_slice(past.delta_derivative);
+        self.is_recalled = true;
         if let Some(by_order) = &mut self.by_order {
             let (width, last) = history.last();
             by_order.slow.recall(past.mode, width, last);

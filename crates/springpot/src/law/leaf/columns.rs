@@ -25,6 +25,9 @@ pub trait Columns: Leaf + Clone {
     /// Hands over its inner variables at t = 0, as many as [`Leaf::size`] says.
     fn at_start<T: Real>(&self, _at: &Point<T>, _take: &mut dyn FnMut(T)) {}
 
+    /// Hands over its inner variables behind a periodic stroke that turned round there ([`Leaf::recall`]).
+    fn after_turns<T: Real>(&self, _turns: &[T], _take: &mut dyn FnMut(T)) {}
+
     /// Works out a step from the inner variables at its start.
     fn solved(&self, step: &Step, start: &[f64]) -> Self::Solved<f64>;
 
@@ -84,6 +87,9 @@ pub trait ByColumns {
     /// [`Leaf::begin_variation`].
     fn begin(&self, at: &Point, told: &PointVariation, own: VariationMut);
 
+    /// [`Leaf::recall_variation`].
+    fn recall(&self, turns: [&[f64]; 2], own: VariationMut);
+
     /// [`Leaf::vary`].
     fn vary(&self, step: &Step, state: StateRef, told: &StepVariation, own: VariationRef, forces: &mut [f64]);
 
@@ -120,6 +126,18 @@ impl<L: Columns> ByColumns for L {
             let stroke = Dual { value: at.stroke, slope: told.stroke[p] };
             let mut variables = own.variables.iter_mut().skip(p).step_by(own.count);
             leaf.at_start(&Point { t: 0.0, stroke, rate: Dual::default(), inputs: &inputs }, &mut |variable: Dual| {
+                variables.next().into_iter().for_each(|own| *own = variable.slope);
+            });
+        }
+    }
+
+    fn recall(&self, [turns, changes]: [&[f64]; 2], own: VariationMut) {
+        for p in 0..own.count {
+            let (leaf, _) = column(self, &own.view(), p);
+            let of_turns = changes.iter().skip(p).step_by(own.count);
+            let turns: Vec<Dual> = turns.iter().zip(of_turns).map(|(&value, &slope)| Dual { value, slope }).collect();
+            let mut variables = own.variables.iter_mut().skip(p).step_by(own.count);
+            leaf.after_turns(&turns, &mut |variable: Dual| {
                 variables.next().into_iter().for_each(|own| *own = variable.slope);
             });
         }

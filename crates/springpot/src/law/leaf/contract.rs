@@ -119,6 +119,13 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
     /// x(0).
     fn recall(&self, _turns: &[f64], _variables: &mut [f64]) {}
 
+    /// Puts what changes of its inner variables behind such a stroke, where the turns are these and change by these blocks.
+    fn recall_variation(&self, turns: [&[f64]; 2], own: VariationMut) {
+        if let Some(columns) = self.by_columns() {
+            columns.recall(turns, own);
+        }
+    }
+
     /// Appends how well the step knows each of its memories and inner variables.
     fn local_errors(&self, _step: &Step, _state: StateRef, _errors: &mut Vec<LocalError>) {}
 
@@ -144,8 +151,8 @@ pub trait Leaf: Send + Sync + std::fmt::Debug {
     /// What it is like under small and fast strokes about `at`.
     fn linearised(&self, at: &Point) -> Term;
 
-    /// What the parameter that its numbers carry changes of coefficient and order of [`Leaf::linearised`]; `None` where that is not known.
-    fn linearised_slope(&self, _at: &Point) -> Option<Term> {
+    /// What the parameter that its numbers and the inputs carry changes of coefficient and order of [`Leaf::linearised`]; `None` where that is not known.
+    fn linearised_slope(&self, _at: &Point<Dual>) -> Option<Term> {
         let mut moves = false;
         let known = self.numbers(&mut |number| moves |= number.slope != 0.0);
         (known && !moves).then_some(Term { coefficient: 0.0, order: 0.0 })

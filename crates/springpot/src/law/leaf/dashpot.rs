@@ -85,7 +85,7 @@ impl Leaf for Dashpot {
         Term { coefficient: self.viscosity.value, order: 1.0 }
     }
 
-    fn linearised_slope(&self, _: &Point) -> Option<Term> {
+    fn linearised_slope(&self, _: &Point<Dual>) -> Option<Term> {
         Some(Term { coefficient: self.viscosity.slope, order: 0.0 })
     }
 

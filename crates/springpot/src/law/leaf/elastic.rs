@@ -89,7 +89,7 @@ impl<T: Elastic> Leaf for T {
         Term { coefficient: self.slope(at.stroke).abs(), order: 0.0 }
     }
 
-    fn linearised_slope(&self, _: &Point) -> Option<Term> {
+    fn linearised_slope(&self, _: &Point<Dual>) -> Option<Term> {
         if !Elastic::is_linear(self) {
             return None;
         }

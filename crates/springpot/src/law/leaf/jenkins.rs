@@ -153,7 +153,7 @@ impl Leaf for Jenkins {
 
     /// Where it came to from p = 0: a loop that yields is the same after a period, whatever was before.
     fn recall(&self, turns: &[f64], variables: &mut [f64]) {
-        variables[0] = turns.iter().chain(turns).fold(0.0, |slipped, stroke| self.slipped(slipped, *stroke));
+        self.after_turns(turns, &mut |slipped| variables[0] = slipped);
     }
 
     /// F_y·|p'|: in proportion to the rate where it slips all along, and with the integral F_y·∫|p'| dt to the last bit.
@@ -246,6 +246,12 @@ impl Columns for Jenkins {
 
     fn at_start<T: Real>(&self, at: &Point<T>, take: &mut dyn FnMut(T)) {
         take(self.follows(0.0.into(), at.stroke, self.slipped(0.0, at.stroke.value())));
+    }
+
+    fn after_turns<T: Real>(&self, turns: &[T], take: &mut dyn FnMut(T)) {
+        take(turns.iter().chain(turns).fold(0.0.into(), |slipped: T, stroke| {
+            self.follows(slipped, *stroke, self.slipped(slipped.value(), stroke.value()))
+        }));
     }
 
     fn solved(&self, step: &Step, start: &[f64]) -> Slipped {

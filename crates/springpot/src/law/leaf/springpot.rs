@@ -555,8 +555,8 @@ impl Leaf for Springpot {
         Term { coefficient: self.coefficient.at(at.inputs).value, order: self.alpha.value }
     }
 
-    fn linearised_slope(&self, at: &Point) -> Option<Term> {
-        let coefficient = self.coefficient.at(&at.inputs_as_numbers()).value.slope;
+    fn linearised_slope(&self, at: &Point<Dual>) -> Option<Term> {
+        let coefficient = self.coefficient.at(at.inputs).value.slope;
         Some(Term { coefficient, order: self.alpha.slope })
     }
 

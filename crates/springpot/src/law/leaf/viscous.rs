@@ -57,8 +57,8 @@ impl Leaf for Viscous {
         Term { coefficient: self.viscosity.at(at.inputs).value, order: 1.0 }
     }
 
-    fn linearised_slope(&self, at: &Point) -> Option<Term> {
-        Some(Term { coefficient: self.viscosity.at(&at.inputs_as_numbers()).value.slope, order: 0.0 })
+    fn linearised_slope(&self, at: &Point<Dual>) -> Option<Term> {
+        Some(Term { coefficient: self.viscosity.at(at.inputs).value.slope, order: 0.0 })
     }
 
     fn holds(&self) -> Holds {

@@ -3,6 +3,7 @@
 use super::Network;
 use super::part::{Onset, Part, Reported, Seen, Take};
 use crate::collocation::{MAX_NODES, Nodes};
+use crate::dual::Dual;
 use crate::fractional::{KernelError, Memory, RatePolynomial};
 use crate::law::harmonic::{self, Sine};
 use crate::law::leaf::{Free, Guard, Holds, Leaf, Slide, When};
@@ -155,8 +156,9 @@ impl Part for LeafPart {
         }
     }
 
-    fn modulus_slope(&self, at: &Point, [s, by]: [Complex64; 2]) -> Option<[Complex64; 2]> {
-        let Term { coefficient, order } = self.leaf.linearised(at);
+    fn modulus_slope(&self, at: &Point<Dual>, [s, by]: [Complex64; 2]) -> Option<[Complex64; 2]> {
+        let inputs = at.values_of_inputs();
+        let Term { coefficient, order } = self.leaf.linearised(&at.without_derivatives(&inputs));
         let changed = self.leaf.linearised_slope(at)?;
         let power = if order == 0.0 { Complex64::ONE } else { s.powf(order) };
         let by_order = if changed.order == 0.0 { Complex64::ZERO } else { changed.order * s.ln() };

@@ -2,6 +2,7 @@
 
 use super::{LeafPart, Network};
 use crate::collocation::MAX_NODES;
+use crate::dual::Dual;
 use crate::fractional::KernelError;
 use crate::law::harmonic::Sine;
 use crate::law::leaf::{Free, Guard, Holds, Leaf, Slide, When};
@@ -181,7 +182,7 @@ pub(in crate::law) trait Part: std::fmt::Debug {
     }
 
     /// [`Network::modulus_slope`].
-    fn modulus_slope(&self, at: &Point, s: [Complex64; 2]) -> Option<[Complex64; 2]> {
+    fn modulus_slope(&self, at: &Point<Dual>, s: [Complex64; 2]) -> Option<[Complex64; 2]> {
         self.parts().iter().try_fold([Complex64::ZERO; 2], |[value, slope], part| {
             let [own, by] = part.ask().modulus_slope(at, s)?;
             Some([value + own, slope + by])
@@ -242,6 +243,24 @@ pub(super) fn asymptote(parts: impl Iterator<Item = Term> + Clone, onset: Onset,
     let same = terms().filter(|term| term.order == order).map(|term| term.coefficient);
     let coefficient = if adds { same.sum() } else { same.map(f64::recip).sum::<f64>().recip() };
     Term { coefficient, order }
+}
+
+/// [`Part::asymptote`], and what the parameter that numbers and inputs carry changes of its coefficient; `None` where a leaf does not know.
+pub(in crate::law) fn asymptote_by(part: &Network, at: &Point<Dual>, onset: Onset) -> Option<(Term, f64)> {
+    let inputs = at.values_of_inputs();
+    let whole = part.ask().asymptote(&at.without_derivatives(&inputs), onset);
+    if let Network::Leaf(leaf) = part {
+        return Some((whole, leaf.leaf.linearised_slope(at)?.coefficient));
+    }
+    let adds = !matches!(part, Network::Series(_));
+    let mut slope = 0.0;
+    for part in part.parts() {
+        let (Term { coefficient, order }, own) = asymptote_by(part, at, onset)?;
+        if order == whole.order && coefficient != 0.0 {
+            slope += if adds { own } else { own * (whole.coefficient / coefficient).powi(2) };
+        }
+    }
+    Some((whole, slope))
 }
 
 /// Which end of the times a law is looked at.

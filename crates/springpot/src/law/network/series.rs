@@ -15,12 +15,14 @@ mod slide;
 mod solve;
 mod start;
 mod vary;
+mod vary_past;
 mod vary_start;
 
 use super::part::{self, Onset, Part, Reported, Take};
 use super::{MOST_IN_SERIES, Network};
 use crate::collocation::inner::TABLEAU_OF_FOUR;
 use crate::collocation::{MAX_NODES, Nodes};
+use crate::dual::Dual;
 use crate::fractional::{KernelError, Kind as Derivative};
 use crate::law::harmonic::{self, Sine};
 use crate::law::leaf::{Guard, Holds, Jenkins, Slide};
@@ -514,7 +516,7 @@ impl Part for Series {
         }
     }
 
-    fn modulus_slope(&self, at: &Point, s: [Complex64; 2]) -> Option<[Complex64; 2]> {
+    fn modulus_slope(&self, at: &Point<Dual>, s: [Complex64; 2]) -> Option<[Complex64; 2]> {
         let moduli = self.parts.iter().map(|part| part.ask().modulus_slope(at, s)).collect::<Option<Vec<_>>>()?;
         let slack: Vec<&[Complex64; 2]> = moduli.iter().filter(|[own, _]| *own == Complex64::ZERO).collect();
         match slack[..] {

@@ -5,6 +5,7 @@ use super::{LeafPart, Network};
 use crate::dual::Dual;
 use crate::fractional::{KernelError, MemoryTangent};
 use crate::law::leaf::When;
+use crate::law::past::{Recalled, RecalledVariation, recall_variation as recall};
 use crate::law::state::StateRef;
 use crate::law::step::{Point, Step};
 use crate::law::variation::{
@@ -47,6 +48,25 @@ pub(in crate::law) trait Vary: Part {
     /// Puts what changes of its state at t = 0 ([`crate::law::Leaf::begin_variation`]).
     fn begin_variation(&self, at: &Point, state: &mut StateRef, told: &PointVariation, own: &mut VariationMut) {
         self.parts().iter().for_each(|part| part.ask().begin_variation(at, state, told, own));
+    }
+
+    /// Puts what changes of a stroke before t = 0 into what changes of its state, which recalls that stroke ([`Part::recall`]); `laws` is it as each
+    /// parameter has it.
+    ///
+    /// # Errors
+    /// What no derivative is known of.
+    fn recall_variation(
+        &self,
+        stroke: (&Recalled, &RecalledVariation),
+        at: (&Point, &PointVariation),
+        laws: &[&Network],
+        state: &mut StateRef,
+        own: &mut VariationMut,
+    ) -> Result<(), String> {
+        self.parts().iter().enumerate().try_for_each(|(k, part)| {
+            let laws: Vec<&Network> = laws.iter().map(|law| &law.parts()[k]).collect();
+            part.ask().recall_variation(stroke, at, &laws, state, own)
+        })
     }
 
     /// Appends how fast its inner variables change ([`crate::law::Leaf::rates`]).
@@ -168,6 +188,25 @@ impl Vary for LeafPart {
     fn begin_variation(&self, at: &Point, state: &mut StateRef, told: &PointVariation, own: &mut VariationMut) {
         let size = self.leaf.size();
         self.leaf.begin_variation(at, state.take(size), told, own.take(self.number_count(), size));
+    }
+
+    fn recall_variation(
+        &self,
+        (stroke, changes): (&Recalled, &RecalledVariation),
+        _: (&Point, &PointVariation),
+        _: &[&Network],
+        state: &mut StateRef,
+        own: &mut VariationMut,
+    ) -> Result<(), String> {
+        let size = self.leaf.size();
+        let (state, own) = (state.take(size), own.take(self.number_count(), size));
+        for (memory, tangent) in state.memories.iter().zip(&mut *own.memories) {
+            recall(memory, tangent, stroke, changes);
+        }
+        if size.variables > 0 {
+            self.leaf.recall_variation([&stroke.turns(), &changes.turns(stroke)], own);
+        }
+        Ok(())
     }
 
     fn rates(&self, at: &Point, state: &mut StateRef, rates: &mut Vec<f64>) -> bool {

@@ -209,8 +209,8 @@ impl Stepper for Radau {
         true
     }
 
-    fn starts_with(&self) -> Option<&[f64]> {
-        Some(&self.step.origin.a)
+    fn starts_with(&self) -> Option<[&[f64]; 2]> {
+        Some([&self.step.origin.v, &self.step.origin.a])
     }
 
     fn vary_within(&mut self, recorder: &mut Recorder, within: Option<(f64, f64)>) {

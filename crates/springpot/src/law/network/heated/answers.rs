@@ -2,6 +2,7 @@
 
 use super::{Heated, SHARPNESS, by_the_wall};
 use crate::collocation::MAX_NODES;
+use crate::dual::Dual;
 use crate::fractional::KernelError;
 use crate::law::harmonic::Sine;
 use crate::law::leaf::Guard;
@@ -221,8 +222,9 @@ impl Part for Heated {
         self.law.has_guards(&self.still(at).point())
     }
 
-    fn modulus_slope(&self, at: &Point, s: [Complex64; 2]) -> Option<[Complex64; 2]> {
-        let place = self.still(at);
+    fn modulus_slope(&self, at: &Point<Dual>, s: [Complex64; 2]) -> Option<[Complex64; 2]> {
+        let inputs = at.values_of_inputs();
+        let place = self.still(&at.without_derivatives(&inputs));
         self.law.modulus_slope(&place.point(), s.map(|s| s * place.factor))
     }
 

@@ -13,12 +13,15 @@ use crate::collocation::{Nodes, RADAU_NODES, STAGES, lagrange_row};
 use crate::dual::{Dual, Real};
 use crate::law::heat::{GAS, Shift};
 use crate::law::leaf::When;
+use crate::law::network::Network;
 use crate::law::network::part::Part;
 use crate::law::network::vary::Vary;
-use crate::law::state::StateRef;
+use crate::law::past::{Begun, ByHeat};
+use crate::law::state::{State, StateRef};
 use crate::law::step::{InputValue, Point, Response, Step};
 use crate::law::variation::{
-    ObservationVariation, PointVariation, PowersVariation, StepVariation, TakeError, VariationMut, VariationRef, add,
+    LawVariation, ObservationVariation, PointVariation, PowersVariation, StepVariation, TakeError, VariationMut,
+    VariationRef, add,
 };
 
 /// Iterations for what changes of the temperatures, and the change of it at which they end.
@@ -387,6 +390,46 @@ impl Heated {
         push_inputs(&mut inside, &each);
         each.into_iter().for_each(|seen| inside.push(seen));
         inside
+    }
+
+    /// What changes of `state` behind a past that was spent at the temperature of the start ([`Heated::recalled`]): `take` says it of the law
+    /// itself, whose state, a_T, stroke of heat and changes of these it is told.
+    ///
+    /// # Errors
+    /// Those of `take`, and of a clock that moves.
+    pub(in crate::law) fn variation_of_past(
+        &self,
+        of: Begun,
+        state: &State,
+        take: impl FnOnce(Begun, &State, f64, f64, &ByHeat) -> Result<LawVariation, String>,
+    ) -> Result<LawVariation, String> {
+        let at = of.at();
+        let mut whole = LawVariation::begin(of.law, of.by, &at, &of.told, state)?;
+        let (size, view) = (self.own_size(), whole.view());
+        let share = self.take_own(&mut { view });
+        let (kept, numbers) = (self.own(&state.view().variables[..size.variables], 0.0), self.all_numbers(&share));
+        let temperature = |p: usize| self.temperature_now(&kept, &at, &of.told, (&share, p));
+        let of_each = |change: &dyn Fn(&Numbers, Dual) -> Dual| -> Vec<f64> {
+            numbers.iter().enumerate().map(|(p, own)| change(own, temperature(p)[0]).slope).collect()
+        };
+        let ln_factor = of_each(&|own, temperature| {
+            self.heat.shift.as_ref().map_or(Dual::default(), |shift| own.ln_factor(shift, temperature)[0])
+        });
+        let longer =
+            of_each(&|own, temperature| self.heat.expansion.map_or(Dual::default(), |_| own.stroke(temperature)));
+        let inside = self.told_point(&at, &of.told, &numbers, temperature);
+        let by: Vec<Option<Network>> = of
+            .by
+            .iter()
+            .map(|law| law.as_ref().and_then(Network::as_heated).map(|heated| heated.law().clone()))
+            .collect();
+        let (warm, mut inputs) = (self.seen(of.start.inputs).value, Vec::new());
+        let start = self.start(&of.start, &mut inputs);
+        let inner = Begun { law: &self.law, by: &by, start, told: inside.point(None) };
+        let (factor, stroke) = (self.heat.factor(warm), self.heat.stroke(warm));
+        let inner = take(inner, &state.without(size.variables), factor, stroke, &ByHeat { ln_factor, longer })?;
+        whole.take_inner(inner, size.variables);
+        Ok(whole)
     }
 
     /// Splits off the share of the heat.

@@ -8,15 +8,16 @@
 use super::asked::Asked;
 use super::loose::Sought;
 use super::solve::{Inner, Lines, Solved, invert, solve, times};
-use super::{Matrix, Series, Settled, Values, is_near, vary_start};
+use super::{Matrix, Series, Settled, Values, is_near, vary_past, vary_start};
 use crate::collocation::inner::TABLEAU_OF_FOUR;
 use crate::collocation::{MAX_NODES, Nodes};
 use crate::dual::Dual;
 use crate::fractional::RatePolynomial;
 use crate::law::leaf::When;
-use crate::law::network::MOST_IN_SERIES;
 use crate::law::network::part::Part;
 use crate::law::network::vary::Vary;
+use crate::law::network::{MOST_IN_SERIES, Network};
+use crate::law::past::{Recalled, RecalledVariation};
 use crate::law::state::StateRef;
 use crate::law::step::{Course, InputValue, Point, Power, Powers, Response, Step};
 use crate::law::variation::{
@@ -510,6 +511,17 @@ impl Vary for Series {
 
     fn begin_variation(&self, at: &Point, state: &mut StateRef, told: &PointVariation, own: &mut VariationMut) {
         vary_start::begin(self, at, state, told, own);
+    }
+
+    fn recall_variation(
+        &self,
+        stroke: (&Recalled, &RecalledVariation),
+        at: (&Point, &PointVariation),
+        laws: &[&Network],
+        state: &mut StateRef,
+        own: &mut VariationMut,
+    ) -> Result<(), String> {
+        vary_past::recall(self, stroke, at, laws, state, own)
     }
 
     /// Of inner strokes nothing is told.
