@@ -1,6 +1,6 @@
 //! Laws with memories behind others, whose files say how they began.
 
-use crate::{COLUMNS_OF_SLIDER, compare};
+use crate::{COLUMNS_OF_SLIDER, compare, compare_within};
 
 /// A mass on a rail, held by one element.
 pub(crate) fn slider(element: &str) -> String {
@@ -42,6 +42,29 @@ fn springpots_in_series() {
     );
     let paths = [("element.strut.c_1", 0.2), ("element.strut.a_1", 1e-3), ("element.strut.a_2", 1e-3)];
     compare(&two, &COLUMNS_OF_SLIDER, &paths);
+}
+
+/// Parts that let go, and springs that slip, behind others.
+#[test]
+fn what_lets_go_in_series() {
+    let behind = |leaf: &str, numbers: &str, other: &str| {
+        slider(&format!(
+            "network = \"parallel(series({leaf}, {other}), spring(k))\"\nparameters = {{ {numbers}, c = 30, k = 20{} }}",
+            if other.contains("(c, a)") { ", a = 0.5" } else { "" }
+        ))
+    };
+    let columns = ["q.q1", "v.q1", "strut.force", "strut.stored", "strut.dissipated"];
+    let slips = ("jenkins(k_j, F_y)", "k_j = 300, F_y = 3");
+    let paths = [("element.strut.k_j", 0.5), ("element.strut.F_y", 5e-3), ("element.strut.c", 0.05)];
+    for other in ["springpot(c, a)", "dashpot(c)"] {
+        compare_within(1e-6, &behind(slips.0, slips.1, other), &columns, &paths);
+    }
+    let rubs = behind("friction(F, v_0)", "F = 3, v_0 = 0.2", "dashpot(c)");
+    let paths = [("element.strut.F", 1e-2), ("element.strut.c", 0.1), ("motion.start.q.q1", 1e-3)];
+    compare(&rubs, &columns, &paths);
+    let pulls = behind("tension(k_t)", "k_t = 300", "springpot(c, a)");
+    // It is taut again between two rows: differences must not reach there.
+    compare_within(1e-6, &pulls, &columns, &[("element.strut.k_t", 1.0), ("element.strut.a", 1e-5)]);
 }
 
 #[test]

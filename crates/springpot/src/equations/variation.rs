@@ -113,6 +113,8 @@ pub(crate) struct ElementVariation {
     inputs: [Vec<f64>; 2],
     /// Forces at the nodes, by all but strokes and rates there.
     pub(crate) force: Vec<f64>,
+    /// Its answer, where that of the step has other tangents.
+    exact: Option<Response>,
     /// Force, stored energy and D^alpha x at the row.
     row: [Vec<f64>; 3],
     /// What the law tells of itself there.
@@ -213,6 +215,7 @@ impl Variation {
                 rate: points(),
                 inputs: [inputs(), inputs()],
                 force: vec![0.0; STAGES * count],
+                exact: None,
                 row: [(); 3].map(|()| vec![0.0; count]),
                 told: Vec::new(),
             }
@@ -625,7 +628,10 @@ impl Variation {
         let count = self.count();
         self.works.forget();
         let nodes = if self.one_size.is_some() { 1 } else { STAGES };
-        for (e, ElementVariation { law, stroke, rate, inputs, force, .. }) in self.elements.iter_mut().enumerate() {
+        for (e, ElementVariation { law, stroke, rate, inputs, force, exact, .. }) in
+            self.elements.iter_mut().enumerate()
+        {
+            *exact = equations.bank.exact_response(e);
             let told = of_nodes(nodes, count, [stroke, rate], inputs);
             equations.bank.vary(e, &told, law, &mut force[..nodes * count]);
         }
@@ -711,6 +717,11 @@ impl Variation {
         }
         self.nodes.swap(0, STAGES);
         self.take_sizes();
+    }
+
+    /// What element `e` answered to the step that was asked.
+    pub(crate) fn response<'a>(&'a self, equations: &'a Equations, e: usize) -> &'a Response {
+        self.elements[e].exact.as_ref().unwrap_or_else(|| equations.bank.response(e))
     }
 
     /// What changes of the force of element `e` at node `i` (from 1), parameter by parameter.

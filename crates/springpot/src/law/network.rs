@@ -405,6 +405,13 @@ impl Network {
         response
     }
 
+    /// The same with the tangents that derivatives by parameters take, where iterations take others; nothing where they are the same.
+    pub(crate) fn evaluate_exactly(&self, step: &Step, state: &State) -> Option<Response> {
+        let mut response = Response::default();
+        self.ask().slips_inside().then(|| self.ask().evaluate_exactly(step, &mut state.view(), &mut response))?;
+        Some(response)
+    }
+
     /// ∂F_i/∂u_j for input `input`, u_j its value at node j, at the strokes of `step`. Pure.
     pub fn by_input(&self, step: &Step, state: &State, input: usize) -> [[f64; MAX_NODES]; MAX_NODES] {
         let mut slopes = [[0.0; MAX_NODES]; MAX_NODES];
@@ -438,6 +445,11 @@ impl Network {
     /// Whether its force may have kinks that steps are to end on.
     pub fn has_guards(&self, at: &Point) -> bool {
         self.ask().has_guards(at)
+    }
+
+    /// Whether what it dissipates may begin at once at one of them, from a time that no derivative tells; springs that slip tell how far they slipped.
+    pub(crate) fn begins_untold(&self, at: &Point) -> bool {
+        self.has_guards(at) && self.any_leaf(|leaf| leaf.size().variables > 0 && leaf.slips().is_none())
     }
 
     /// Whether its force may jump at one of them ([`Leaf::jumps`]).

@@ -550,7 +550,7 @@ fn springs_that_slip() {
         Replay { difference: 1e-4, rounding: 1e-4, ..replay }.check(name, KNOWN);
     }
     let law = Network::series([alone(&[60.0.into(), 1.1.into()]), Network::dashpot(2.0)]);
-    assert_eq!(law.without_derivatives().unwrap(), "a spring that slips in series with what is no spring");
+    assert_eq!(law.without_derivatives(), None);
 }
 
 #[test]

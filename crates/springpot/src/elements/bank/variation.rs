@@ -49,6 +49,13 @@ impl ElementBank {
         }
     }
 
+    /// What it answers to the step, with the tangents that derivatives take where those of the step are others ([`crate::law::Network`]).
+    pub(crate) fn exact_response(&self, e: usize) -> Option<Response> {
+        let Banked { law, kept, told, .. } = &self.elements[e];
+        let Kept { state, .. } = kept.as_ref()?;
+        law.evaluate_exactly(&told.step(self.step), state)
+    }
+
     /// Adds what changes of the energy flows of element `e` at the start and at the nodes of the step; nothing of a law whose energies are unknown.
     pub(crate) fn vary_powers(&self, e: usize, by: &StepVariation, own: &LawVariation, sum: &mut PowersVariation) {
         let Banked { law, kept, told, .. } = &self.elements[e];

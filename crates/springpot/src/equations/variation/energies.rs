@@ -167,10 +167,10 @@ impl Variation {
         let crossed = self.works.done.crossed.take();
         for (e, last) in std::mem::take(&mut self.works.done.last).into_iter().enumerate() {
             let (law, now) = (&self.system.elements[e].law, equations.bank.powers(e)[0].dissipation);
-            // What begins to slip dissipates at once, from a time that nobody tells.
+            // What begins to slip dissipates at once, from a time that not all tell.
             if crossed.is_none()
                 && (now - last).abs() > GOES_ON * last.abs().max(now.abs())
-                && law.has_guards(&equations.bank.point(e, 0))
+                && law.begins_untold(&equations.bank.point(e, 0))
             {
                 let [dissipated, supplied] = &mut self.works.done.elements[e];
                 dissipated.fill(f64::NAN);

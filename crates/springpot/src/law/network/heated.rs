@@ -18,7 +18,7 @@ use crate::fractional::KernelError;
 use crate::law::heat::Heat;
 use crate::law::leaf;
 use crate::law::state::{State, StateRef};
-use crate::law::step::{InputValue, Point, Powers, Start, Step};
+use crate::law::step::{InputValue, Point, Powers, Response, Start, Step};
 use clock::Clock;
 use std::sync::Arc;
 use unshifted::Unshifted;
@@ -319,6 +319,31 @@ impl Heated {
         let start = self.start(start, &mut inputs);
         state.append(recall(&self.law, &start, factor, self.heat.stroke(temperature))?);
         Ok(state)
+    }
+
+    /// Forces and tangents of the law as it is asked by its own clock.
+    fn respond(
+        &self,
+        step: &Step,
+        state: &mut StateRef,
+        response: &mut Response,
+        evaluate: impl FnOnce(&Network, &Step, &mut StateRef, &mut Response),
+    ) {
+        let Some((_, _, inside)) = self.look(step, state) else {
+            self.law.ask().pass(state);
+            response.force = [f64::NAN; MAX_NODES];
+            return;
+        };
+        let mut own = Response::default();
+        evaluate(&self.law, &inside.step(step), state, &mut own);
+        for i in 0..step.nodes.count() {
+            response.force[i] += own.force[i];
+            response.singular[i] += own.singular[i];
+            for j in 0..step.nodes.count() {
+                response.d_stroke[i][j] += own.d_stroke[i][j];
+                response.d_rate[i][j] += inside.clock.factor[j + 1] * own.d_rate[i][j];
+            }
+        }
     }
 
     /// How many of the local errors, the first of them, are those of the clock and of the temperature.

@@ -7,7 +7,7 @@ use crate::fractional::{KernelError, MemoryTangent};
 use crate::law::leaf::When;
 use crate::law::past::{Recalled, RecalledVariation, recall_variation as recall};
 use crate::law::state::StateRef;
-use crate::law::step::{Point, Step};
+use crate::law::step::{Point, Response, Step};
 use crate::law::variation::{
     ObservationVariation, PointVariation, PowersVariation, StepVariation, TakeError, VariationMut, VariationRef,
 };
@@ -67,6 +67,16 @@ pub(in crate::law) trait Vary: Part {
             let laws: Vec<&Network> = laws.iter().map(|law| &law.parts()[k]).collect();
             part.ask().recall_variation(stroke, at, &laws, state, own)
         })
+    }
+
+    /// [`Part::evaluate`] with tangents that are exact where iterations take others ([`Self::slips_inside`]).
+    fn evaluate_exactly(&self, step: &Step, state: &mut StateRef, response: &mut Response) {
+        self.parts().iter().for_each(|part| part.ask().evaluate_exactly(step, state, response));
+    }
+
+    /// Whether there are such: springs that slip behind what is no spring.
+    fn slips_inside(&self) -> bool {
+        self.parts().iter().any(|part| part.ask().slips_inside())
     }
 
     /// Appends how fast its inner variables change ([`crate::law::Leaf::rates`]).
@@ -207,6 +217,10 @@ impl Vary for LeafPart {
             self.leaf.recall_variation([&stroke.turns(), &changes.turns(stroke)], own);
         }
         Ok(())
+    }
+
+    fn evaluate_exactly(&self, step: &Step, state: &mut StateRef, response: &mut Response) {
+        self.evaluate(step, state, response);
     }
 
     fn rates(&self, at: &Point, state: &mut StateRef, rates: &mut Vec<f64>) -> bool {

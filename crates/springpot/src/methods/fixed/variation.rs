@@ -27,7 +27,7 @@ impl OneStage {
     /// Works out what changes over the step of size `h` that was solved, where the bank is still told the stage; false where nothing does so in one way.
     pub(super) fn vary(&self, equations: &Equations, variation: &mut Variation, h: f64) -> bool {
         let elements = 0..equations.bank.len();
-        let force: Vec<f64> = elements.map(|e| equations.bank.response(e).force[0]).collect();
+        let force: Vec<f64> = elements.map(|e| variation.response(equations, e).force[0]).collect();
         let [stage, end] = [&self.stage, &self.end].map(|at| Node { t: at.t, q: &at.q, v: &at.v, a: &self.a });
         let mut sliding = vec![0.0; self.model.nv()];
         for (candidate, direction) in self.coulomb.candidates.iter().zip(&self.coulomb.directions) {
@@ -174,7 +174,7 @@ impl OneStage {
                     }
                 }
                 for e in 0..equations.bank.len() {
-                    let response = equations.bank.response(e);
+                    let response = variation.response(equations, e);
                     let (stroke, rate) = (response.d_stroke[0][0], response.d_rate[0][0]);
                     let [on, bend] = &stage.gradients[e];
                     let along = |column: usize| match self.told() {
@@ -197,7 +197,7 @@ impl OneStage {
             right.resize(own * count, 0.0);
             let mut forces = vec![0.0; equations.bank.len() * count];
             for (e, force) in forces.chunks_exact_mut(count.max(1)).enumerate() {
-                variation.stage_force(equations.bank.response(e), e, force);
+                variation.stage_force(variation.response(equations, e), e, force);
             }
             for ((sum, &row), held) in right.chunks_exact_mut(count.max(1)).zip(free).zip(&held) {
                 if *held {

@@ -91,7 +91,7 @@ impl RadauStep {
         let elements = variation.elements.len();
         let mut force = vec![0.0; elements];
         for (i, stage) in self.stages.iter().enumerate() {
-            force.iter_mut().enumerate().for_each(|(e, force)| *force = equations.bank.response(e).force[i]);
+            force.iter_mut().enumerate().for_each(|(e, force)| *force = variation.response(equations, e).force[i]);
             let t = if i + 1 == STAGES { t_end } else { self.origin.t + RADAU_NODES[i] * h };
             variation.see(equations, i + 1, stage.node(t), &force);
             variation.steer(i + 1, equations, &force);
@@ -269,7 +269,7 @@ impl RadauStep {
             let mut forces = vec![0.0; variation.elements.len() * count];
             for (i, stage) in right.chunks_exact_mut((own * count).max(1)).enumerate() {
                 for (e, force) in forces.chunks_exact_mut(count.max(1)).enumerate() {
-                    variation.force(equations.bank.response(e), e, i + 1, force);
+                    variation.force(variation.response(equations, e), e, i + 1, force);
                 }
                 for (sum, &row) in stage.chunks_exact_mut(count.max(1)).zip(free) {
                     variation.add_unbalanced(i + 1, row, sum);
@@ -323,7 +323,7 @@ impl RadauStep {
             }
             let felt = |row: usize| !variation.relieves(i + 1, row);
             for e in 0..variation.elements.len() {
-                let response = equations.bank.response(e);
+                let response = variation.response(equations, e);
                 let [on, _] = &node.gradients[e];
                 for j in 0..STAGES {
                     force.fill(0.0);

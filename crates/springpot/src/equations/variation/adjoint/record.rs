@@ -27,7 +27,8 @@ impl Recording {
     pub(crate) fn keep_step(&mut self, equations: &Equations, (h, free): (f64, &[usize]), matrix: Vec<f64>) {
         let stages = std::array::from_fn(|i| slopes(&self.variation, i + 1, free));
         let element = |(e, law): (usize, &mut LawProbe)| {
-            let response = equations.bank.response(e);
+            let exact = equations.bank.exact_response(e);
+            let response = exact.as_ref().unwrap_or_else(|| equations.bank.response(e));
             let columns = law.columns();
             let mut forces = Sparse::default();
             let asked = law.ask(|told, own, forces| equations.bank.vary(e, told, own, forces));

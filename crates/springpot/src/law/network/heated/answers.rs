@@ -43,21 +43,7 @@ impl Part for Heated {
     }
 
     fn evaluate(&self, step: &Step, state: &mut StateRef, response: &mut Response) {
-        let Some((_, _, inside)) = self.look(step, state) else {
-            self.law.ask().pass(state);
-            response.force = [f64::NAN; MAX_NODES];
-            return;
-        };
-        let mut own = Response::default();
-        self.law.ask().evaluate(&inside.step(step), state, &mut own);
-        for i in 0..step.nodes.count() {
-            response.force[i] += own.force[i];
-            response.singular[i] += own.singular[i];
-            for j in 0..step.nodes.count() {
-                response.d_stroke[i][j] += own.d_stroke[i][j];
-                response.d_rate[i][j] += inside.clock.factor[j + 1] * own.d_rate[i][j];
-            }
-        }
+        self.respond(step, state, response, |law, step, state, own| law.ask().evaluate(step, state, own));
     }
 
     /// Of the temperature what sources and the expansion make of it; what it does to the clock is left out.

@@ -485,6 +485,10 @@ impl Vary for Heated {
         self.law.ask().begin_variation(&place.point(), state, &inside.point(None), own);
     }
 
+    fn evaluate_exactly(&self, step: &Step, state: &mut StateRef, response: &mut Response) {
+        self.respond(step, state, response, |law, step, state, own| law.ask().evaluate_exactly(step, state, own));
+    }
+
     /// Of what a temperature moves nothing is told.
     fn rates(&self, _: &Point, _: &mut StateRef, _: &mut Vec<f64>) -> bool {
         false
@@ -510,7 +514,7 @@ impl Vary for Heated {
         let changes = self.told_inside(step, &warmed, told, &numbers, true);
         if changes.stroke[count..].iter().chain(&changes.rate[count..]).any(|change| *change != 0.0) {
             let mut response = Response::default();
-            self.law.ask().evaluate(&inner, &mut state.clone(), &mut response);
+            self.law.ask().evaluate_exactly(&inner, &mut state.clone(), &mut response);
             for (i, forces) in forces.chunks_exact_mut(count).enumerate() {
                 for j in 0..step.nodes.count() {
                     let block = (j + 1) * count..(j + 2) * count;

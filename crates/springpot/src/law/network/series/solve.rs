@@ -5,7 +5,7 @@ use super::play::{self, Side};
 use super::{ENOUGH, MOST_HALVINGS, MOST_ITERATIONS, Matrix, Series, Values};
 use crate::collocation::{MAX_NODES, Nodes};
 use crate::fractional::{Form, RatePolynomial};
-use crate::law::network::MOST_IN_SERIES;
+use crate::law::network::{MOST_IN_SERIES, Network};
 use crate::law::state::StateRef;
 use crate::law::step::{Course, Response, Step};
 
@@ -65,6 +65,19 @@ pub(super) struct Lines {
     tangent: Matrix,
 }
 
+/// A spring that slips, where its stiffness has no inverse: F = G x + e, and the others leave it x = r − C F, so that F = (1 + G C)⁻¹ (G r + e).
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Slip {
+    pub(super) part: usize,
+    pub(super) stiffness: Matrix,
+    /// C.
+    pub(super) others: Matrix,
+    /// (1 + G C)⁻¹.
+    pub(super) system: Matrix,
+    /// ∂F/∂r.
+    pub(super) tangent: Matrix,
+}
+
 #[derive(Debug, Clone, Copy, Default)]
 struct Line {
     force: [f64; MAX_NODES],
@@ -73,12 +86,38 @@ struct Line {
 
 impl Lines {
     /// Forces and stiffnesses of all parts about `inner`; compliances are still to be found.
-    pub(super) fn look(&mut self, series: &Series, inner: &[Inner; MOST_IN_SERIES], step: &Step, mut state: StateRef) {
+    pub(super) fn look(&mut self, series: &Series, inner: &[Inner; MOST_IN_SERIES], step: &Step, state: StateRef) {
+        self.look_by(series, inner, step, state, &|part, step, state, response| {
+            part.ask().evaluate(step, state, response)
+        });
+    }
+
+    /// The same with the tangents of parts themselves, where iterations take others.
+    pub(super) fn look_exactly(
+        &mut self,
+        series: &Series,
+        inner: &[Inner; MOST_IN_SERIES],
+        step: &Step,
+        state: StateRef,
+    ) {
+        self.look_by(series, inner, step, state, &|part, step, state, response| {
+            part.ask().evaluate_exactly(step, state, response)
+        });
+    }
+
+    fn look_by(
+        &mut self,
+        series: &Series,
+        inner: &[Inner; MOST_IN_SERIES],
+        step: &Step,
+        mut state: StateRef,
+        evaluate: &dyn Fn(&Network, &Step, &mut StateRef, &mut Response),
+    ) {
         let (count, inverse) = (step.nodes.count(), step.nodes.inverse());
         self.each.clear();
         for (k, (part, inner)) in series.parts.iter().zip(inner).enumerate() {
             let mut response = Response::default();
-            part.ask().evaluate(&inner.step(step), &mut state, &mut response);
+            evaluate(part, &inner.step(step), &mut state, &mut response);
             if series.lets_go(k) {
                 self.each.push(Line { force: response.force, compliance: Matrix::default() });
                 continue;
@@ -162,6 +201,34 @@ impl Lines {
             let own = self.each.iter_mut().enumerate().filter(|(k, _)| play.has(*k));
             own.for_each(|(_, line)| line.force[i] = force);
         }
+    }
+
+    /// What slips, beside the others about the strokes of these; the state is at the shares of the parts.
+    pub(super) fn slip(
+        &self,
+        series: &Series,
+        step: &Step,
+        inner: &[Inner; MOST_IN_SERIES],
+        mut state: StateRef,
+    ) -> Option<Slip> {
+        let slipping = (0..series.parts.len()).find(|&k| series.slips(k).is_some())?;
+        series.parts[..slipping].iter().for_each(|part| part.ask().pass(&mut state));
+        let mut response = Response::default();
+        series.parts[slipping].ask().evaluate(&inner[slipping].step(step), &mut state, &mut response);
+        let mut others = Matrix::default();
+        for (_, line) in self.each.iter().enumerate().filter(|(k, _)| *k != slipping) {
+            others.iter_mut().flatten().zip(line.compliance.iter().flatten()).for_each(|(sum, own)| *sum += own);
+        }
+        let mut system = product(&response.d_stroke, &others);
+        system.iter_mut().enumerate().for_each(|(i, row)| row[i] += 1.0);
+        invert(&mut system, step.nodes.count(), f64::MIN_POSITIVE);
+        let tangent = product(&system, &response.d_stroke);
+        Some(Slip { tangent, part: slipping, stiffness: response.d_stroke, others, system })
+    }
+
+    /// (Σ C)⁻¹.
+    pub(super) fn tangent(&self) -> Matrix {
+        self.tangent
     }
 
     /// C of part `k`.

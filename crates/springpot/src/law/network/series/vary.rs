@@ -234,7 +234,7 @@ impl Series {
         };
         let inputs = [blocks(|input| input.value), blocks(|input| input.rate)];
         let mut lines = Lines::default();
-        lines.look(self, inner, step, state);
+        lines.look_exactly(self, inner, step, state);
         lines.turn(self, nodes);
         let passed: Option<Vec<f64>> = of_size.map(|of_size| {
             let of_node = |c: &f64| of_size.iter().map(|h| c * h).collect::<Vec<f64>>();
@@ -243,6 +243,8 @@ impl Series {
         let starts = own.take(0, self.own_size());
         // What changes of each part where its strokes at the nodes stay, and the slopes of friction.
         let mut explicit: Vec<Vec<f64>> = Vec::with_capacity(self.parts.len());
+        let slip = lines.slip(self, step, inner, state);
+        let slipping = slip.map(|slip| slip.part);
         let mut steep = [0.0; MAX_NODES];
         let still = vec![0.0; (nodes + 1) * count];
         for (k, (part, inner)) in self.parts.iter().zip(inner).enumerate() {
@@ -304,7 +306,7 @@ impl Series {
             };
             let mut moved = Moved::default();
             let mut left: [f64; MAX_NODES] = std::array::from_fn(|i| if i < nodes { asked[i + 1] } else { 0.0 });
-            for k in (0..self.parts.len()).filter(|k| Some(*k) != friction) {
+            for k in (0..self.parts.len()).filter(|k| Some(*k) != friction && Some(*k) != slipping) {
                 let longer = times(&compliance[k], &explicit_at(k));
                 left.iter_mut().zip(longer).for_each(|(left, longer)| *left += longer);
             }
@@ -321,7 +323,14 @@ impl Series {
                     rates = times(system, &right);
                     moved.force = std::array::from_fn(|i| steep[i] * rates[i] + held[i]);
                 }
-                _ => moved.force = times(tangent, &left),
+                // The tangent of what slips has no inverse.
+                _ => match &slip {
+                    Some(slip) => {
+                        let (own, right) = (explicit_at(slip.part), times(&slip.stiffness, &left));
+                        moved.force = times(&slip.system, &std::array::from_fn(|i| right[i] + own[i]));
+                    }
+                    None => moved.force = times(tangent, &left),
+                },
             }
             (0..nodes).filter(|i| !carried[*i]).for_each(|i| moved.force[i] = 0.0);
             let first = self.play().map(super::Play::first);
@@ -334,6 +343,10 @@ impl Series {
                 for i in 0..nodes {
                     moved.inner[k].stroke[i + 1] = if Some(k) == friction { start + slid[i] } else { longer[i] };
                 }
+            }
+            if let Some(slip) = &slip {
+                let taken = times(&slip.others, &moved.force);
+                (0..nodes).for_each(|i| moved.inner[slip.part].stroke[i + 1] = left[i] - taken[i]);
             }
             // What is slack takes what the others leave.
             if let Some(first) = first {
@@ -503,8 +516,8 @@ impl Vary for Series {
         if (0..self.parts.len()).filter(|k| self.slides(*k)).count() > 1 {
             return Some("friction in series with friction".to_owned());
         }
-        if (0..self.parts.len()).any(|k| self.slips(k).is_some()) {
-            return Some("a spring that slips in series with what is no spring".to_owned());
+        if self.loose.is_some() && (0..self.parts.len()).any(|k| self.slips(k).is_some()) {
+            return Some("a spring that slips in series with what lets go".to_owned());
         }
         self.parts.iter().find_map(|part| part.ask().without_derivatives())
     }
@@ -522,6 +535,25 @@ impl Vary for Series {
         own: &mut VariationMut,
     ) -> Result<(), String> {
         vary_past::recall(self, stroke, at, laws, state, own)
+    }
+
+    /// Iterations take what slips for a soft spring.
+    fn evaluate_exactly(&self, step: &Step, state: &mut StateRef, response: &mut Response) {
+        let (asked, Solved { inner, force, mut tangent, .. }) = self.solved(step, state, Sought::Fit);
+        if self.loose.is_none() && self.slips_inside() {
+            let mut lines = Lines::default();
+            let step = &asked.step(step);
+            lines.look_exactly(self, &inner, step, *state);
+            lines.turn(self, step.nodes.count());
+            tangent = lines.slip(self, step, &inner, *state).map_or(lines.tangent(), |slip| slip.tangent);
+        }
+        self.parts.iter().for_each(|part| part.ask().pass(state));
+        asked.respond(&force, &tangent, response);
+    }
+
+    fn slips_inside(&self) -> bool {
+        (0..self.parts.len()).any(|k| self.slips(k).is_some())
+            || self.parts.iter().any(|part| part.ask().slips_inside())
     }
 
     /// Of inner strokes nothing is told.

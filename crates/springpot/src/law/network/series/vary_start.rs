@@ -36,8 +36,8 @@ pub(super) fn begin(series: &Series, at: &Point, state: &mut StateRef, told: &Po
         (0..parts.len()).filter(holds).filter(|k| slack.is_none() || !series.is_free(*k)).collect();
     let [still, one] = [vec![0.0; count], vec![1.0; count]];
     // What changes of part `k`, at rest at its stroke or next to it, which changes by so much: that of its force is told.
-    let mut begin_part = |k: usize, place: f64, stroke: &[f64]| -> Vec<f64> {
-        let inside = Point { stroke: place, rate: 0.0, ..*at };
+    let mut begin_at = |k: usize, [place, rate]: [f64; 2], stroke: &[f64]| -> Vec<f64> {
+        let inside = Point { stroke: place, rate, ..*at };
         let told = PointVariation { stroke, rate: &still, step: None, ..*told };
         parts[k].ask().begin_variation(&inside, &mut states[k].clone(), &told, &mut each[k].reborrow());
         let (mut force, mut spare) = (vec![0.0; count], [vec![0.0; count], vec![0.0; count]]);
@@ -47,6 +47,16 @@ pub(super) fn begin(series: &Series, at: &Point, state: &mut StateRef, told: &Po
         parts[k].ask().vary_at((When::Between, &inside), &mut states[k].clone(), &told, &mut own, &mut sum);
         force
     };
+    // C_k of parts that flow is 1/c_k: what changes of ln C_k, each by its force at a rate.
+    let mut flows = |k: usize, place: f64| -> Vec<f64> {
+        let [rest, moving] = [0.0, SLOW].map(|rate| begin_at(k, [place, rate], &still));
+        let whole = parts[k].ask().asymptote(at, Onset::Long).coefficient * SLOW;
+        rest.iter().zip(&moving).map(|(rest, moving)| (rest - moving) / whole).collect()
+    };
+    let stays = |k: &usize| of_parts[*k] == 0.0 || parts[*k].ask().size().memories > 0;
+    let flowing: Vec<usize> = if (0..parts.len()).all(|k| stays(&k)) { Vec::new() } else { holding.clone() };
+    let of_flow: Vec<(usize, Vec<f64>)> = flowing.iter().map(|&k| (k, flows(k, strokes[k]))).collect();
+    let mut begin_part = |k: usize, place: f64, stroke: &[f64]| begin_at(k, [place, 0.0], stroke);
     // δF = slope·δx + what changes where its stroke stays.
     let mut line = |k: usize, place: f64| {
         let explicit = begin_part(k, place, &still);
@@ -63,17 +73,30 @@ pub(super) fn begin(series: &Series, at: &Point, state: &mut StateRef, told: &Po
         if takes_all.is_some() {
             lines.retain(|(.., slope)| *slope != 0.0);
         }
+        // What slips has its force, whatever the others leave it.
+        let slipping = lines.iter().position(|(k, _, slope)| *slope == 0.0 && series.slips(*k).is_some());
+        let yielding = slipping.map(|at| lines.remove(at));
         let compliance: f64 = lines.iter().map(|(.., slope)| slope.recip()).sum();
         for p in 0..count {
             let owed: f64 = lines.iter().map(|(_, explicit, slope)| explicit[p] / slope).sum();
-            let force = if takes_all.is_some() { 0.0 } else { (told.stroke[p] + owed) / compliance };
+            let force = match &yielding {
+                _ if takes_all.is_some() => 0.0,
+                Some((_, explicit, _)) => explicit[p],
+                None => (told.stroke[p] + owed) / compliance,
+            };
             for (k, explicit, slope) in &lines {
                 moved[*k][p] = match compliance.is_finite() {
                     true => (force - explicit[p]) / slope,
-                    // How parts that flow share a stroke follows from numbers that nobody tells.
-                    false if is_unstretched => of_parts[*k] * told.stroke[p],
-                    false => f64::NAN,
+                    // Parts that flow have shared the stroke as they yield; of memories of one order nothing asks how.
+                    false => {
+                        let all: f64 = of_flow.iter().map(|(k, own)| of_parts[*k] * own[p]).sum();
+                        let own = of_flow.iter().find(|(own, _)| own == k).map_or(0.0, |(_, own)| own[p] - all);
+                        of_parts[*k] * (told.stroke[p] + own * at.stroke)
+                    }
                 };
+            }
+            if let Some((rest, ..)) = &yielding {
+                moved[*rest][p] = told.stroke[p] - lines.iter().map(|(k, ..)| moved[*k][p]).sum::<f64>();
             }
         }
     }
@@ -96,6 +119,9 @@ pub(super) fn begin(series: &Series, at: &Point, state: &mut StateRef, told: &Po
         of_strokes.variables[k * count..(k + 1) * count].copy_from_slice(moved);
     }
 }
+
+/// A rate at which every force that flows is in proportion to it, m/s.
+const SLOW: f64 = 1e-30;
 
 /// Which end of the times shares what a series begins with: of what was held since ever what has relaxed, of what jumps at t = 0 what has not begun.
 fn onset(series: &Series, states: &[StateRef]) -> Onset {
