@@ -396,11 +396,6 @@ fn gradients_back_through_the_run_are_those_beside_it() {
         assert!(agrees, "{metric}: {found} for {truth}");
     }
     assert!(truth.iter().filter(|truth| truth.is_finite() && **truth != 0.0).count() > 40);
-    // What it does not do is refused by name, with the way out.
-    let adjoint = ["--sensitivity", by, "--set", "sensitivity.method=\"adjoint\""];
-    let refused = |more: &[&str]| place.springpot(&[&["check", "arm.toml"][..], &adjoint, more].concat());
-    refused(&["--set", "robot.body.fore.joint.friction={ force = 0.1, stick = true }"])
-        .ends(2, &["does not go back through friction that sticks", "method = \"forward\" does"]);
     let checked = ["sensitivity", "arm.toml", "--by", by, "--check", "--set", "sensitivity.method=\"adjoint\""];
     place.springpot(&checked).ends(2, &["--check compares columns", "method = \"forward\""]);
 }

@@ -2,8 +2,9 @@
 
 use super::layout::{KeptCurve, Layout, Window};
 use super::metrics::{CaseMetrics, Watched};
+use super::simulate::Back;
 use crate::table::Totals;
-use springpot::sensitivity::Tape;
+use springpot::system::RunError;
 use springpot_scenario::Plan;
 use std::collections::BTreeMap;
 
@@ -93,8 +94,14 @@ impl<'a> Kept<'a> {
     }
 
     /// The metrics of the case whose swept values are `lead`.
-    pub(super) fn metrics(&self, layout: &Layout, asked: (&Plan, Option<&Tape>), lead: &str) -> CaseMetrics {
-        self.watched.as_ref().map_or_else(CaseMetrics::default, |watched| watched.metrics(layout, asked, lead))
+    pub(super) fn metrics(
+        &self,
+        layout: &Layout,
+        asked: (&Plan, Option<Back>),
+        lead: &str,
+    ) -> Result<CaseMetrics, RunError> {
+        let metrics = self.watched.as_ref().map(|watched| watched.metrics(layout, asked, lead));
+        metrics.unwrap_or_else(|| Ok(CaseMetrics::default()))
     }
 
     /// Values of one row.

@@ -2,9 +2,11 @@
 
 use super::derivatives::{CaseDerivatives, Measured};
 use super::layout::{Layout, WantedMetric};
+use super::simulate::Back;
 use crate::metrics::{push_line, shares, value};
 use serde::{Deserialize, Serialize};
-use springpot::sensitivity::{Share, Tape};
+use springpot::sensitivity::Share;
+use springpot::system::RunError;
 use springpot_scenario::{MetricPlan, Plan};
 
 /// What the metrics of a case are.
@@ -57,7 +59,11 @@ impl Watched {
     }
 
     /// The gradients of the metrics, back through the run; `of` says which quantity each of them is of.
-    fn back(&self, (plans, of): (&[MetricPlan], &[Option<usize>]), tape: &Tape) -> Vec<Option<Vec<f64>>> {
+    fn back(
+        &self,
+        (plans, of): (&[MetricPlan], &[Option<usize>]),
+        Back { tape, stop }: Back,
+    ) -> Result<Vec<Option<Vec<f64>>>, RunError> {
         let t = &self.columns[0];
         let shares = plans.iter().zip(&self.of).zip(of).map(|((plan, (at, _)), quantity)| {
             let rows = shares(&plan.metric, t, &self.columns[*at])?;
@@ -66,16 +72,24 @@ impl Watched {
         });
         let shares: Vec<Option<Vec<Share>>> = shares.collect();
         let known: Vec<Vec<Share>> = shares.iter().flatten().cloned().collect();
-        let mut gradients = tape.gradients(&known).into_iter();
-        shares.into_iter().map(|shares| shares.and_then(|_| gradients.next())).collect()
+        let mut gradients = tape.gradients(&known, stop)?.into_iter();
+        Ok(shares.into_iter().map(|shares| shares.and_then(|_| gradients.next())).collect())
     }
 
-    /// The metrics of the case whose swept values are `lead`, with their gradients back through `tape`, where there is one.
-    pub(super) fn metrics(&self, layout: &Layout, (plan, tape): (&Plan, Option<&Tape>), lead: &str) -> CaseMetrics {
+    /// The metrics of the case whose swept values are `lead`, with their gradients back through a tape, where there is one.
+    ///
+    /// # Errors
+    /// What keeps the tape from being gone back through.
+    pub(super) fn metrics(
+        &self,
+        layout: &Layout,
+        (plan, back): (&Plan, Option<Back>),
+        lead: &str,
+    ) -> Result<CaseMetrics, RunError> {
         let (plans, mut metrics) = (&plan.metrics, CaseMetrics::default());
         let t = &self.columns[0];
         if t.is_empty() {
-            return metrics;
+            return Ok(metrics);
         }
         for ((plan, (at, _)), wanted) in plans.iter().zip(&self.of).zip(layout.metrics()) {
             let value = value(&plan.metric, t, &self.columns[*at]);
@@ -87,13 +101,13 @@ impl Watched {
             let columns = self.of.iter().map(|(at, changes)| {
                 (column(at), changes.as_ref().map(|changes| changes.iter().map(column).collect()))
             });
-            let gradients = tape.zip(sensitivity.adjoint.as_deref()).map(|(tape, of)| self.back((plans, of), tape));
-            let measured = Measured { lead, t, columns: columns.collect(), gradients };
+            let gradients = back.zip(sensitivity.adjoint.as_deref()).map(|(back, of)| self.back((plans, of), back));
+            let measured = Measured { lead, t, columns: columns.collect(), gradients: gradients.transpose()? };
             metrics.derivatives.gradients(layout, (plans, sensitivity), &measured, &metrics.values);
         }
         let is_own = plans.iter().zip(layout.metrics()).any(|(plan, wanted)| plan.metric != wanted.first);
         let all: Vec<_> = plans.iter().map(|plan| &plan.metric).collect();
         metrics.own = is_own.then(|| serde_json::to_string(&all).unwrap_or_default());
-        metrics
+        Ok(metrics)
     }
 }

@@ -3,13 +3,12 @@
 use super::Sweep;
 use super::checkpoint::{CaseFiles, CaseState, Written};
 use super::metrics::CaseMetrics;
-use super::simulate::{Resumed, Sink};
+use super::simulate::{Back, Resumed, Sink};
 use super::taken::{Taken, lead, push_row};
 use crate::table::disk::DiskFile;
 use crate::table::ordered::Section;
 use crate::table::{Statistics, push_fields, push_text};
-use springpot::sensitivity::Tape;
-use springpot::system::System;
+use springpot::system::{RunError, System};
 use springpot_scenario::Plan;
 use std::io;
 use std::sync::atomic::Ordering;
@@ -144,8 +143,8 @@ impl Sink for Output<'_> {
         files.keep(&state, || sweep.file.sync())
     }
 
-    fn metrics(&self, plan: &Plan, tape: Option<&Tape>) -> CaseMetrics {
-        self.taken.metrics(plan, tape)
+    fn metrics(&self, plan: &Plan, back: Option<Back>) -> Result<CaseMetrics, RunError> {
+        self.taken.metrics(plan, back)
     }
 }
 

@@ -3,7 +3,7 @@
 use super::checkpoint::{CaseDone, CheckpointError, Shards, Stretch, Written};
 use super::layout::Layout;
 use super::metrics::CaseMetrics;
-use super::simulate::{Ran, Resumed, Sink, simulate};
+use super::simulate::{Back, Ran, Resumed, Sink, simulate};
 use super::taken::{Taken, push_row};
 use super::{Progress, events::Happened};
 use crate::table::Statistics;
@@ -12,8 +12,7 @@ use crate::table::sealed::{CHECKPOINT, SealError, open, seal};
 use crate::trouble::Trouble;
 use serde::{Deserialize, Serialize};
 use springpot::driver::{PassedLimit, Report};
-use springpot::sensitivity::Tape;
-use springpot::system::{Stop, System};
+use springpot::system::{RunError, Stop, System};
 use springpot_scenario::{Cases, Plan};
 use std::io;
 use std::path::Path;
@@ -276,7 +275,7 @@ impl Sink for Memory<'_> {
         Ok(())
     }
 
-    fn metrics(&self, plan: &Plan, tape: Option<&Tape>) -> CaseMetrics {
-        self.taken.metrics(plan, tape)
+    fn metrics(&self, plan: &Plan, back: Option<Back>) -> Result<CaseMetrics, RunError> {
+        self.taken.metrics(plan, back)
     }
 }

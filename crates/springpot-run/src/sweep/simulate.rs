@@ -4,8 +4,8 @@ use super::Progress;
 use super::derivatives::Losses;
 use super::metrics::CaseMetrics;
 use crate::trouble::Trouble;
-use springpot::driver::{self, Checkpoint, LimitWatch, PassedLimit, Report, Rows, Watch};
-use springpot::sensitivity::{Lost, Tape};
+use springpot::driver::{self, Checkpoint, LimitWatch, PassedLimit, Report, Rows, Tape, Watch};
+use springpot::sensitivity::Lost;
 use springpot::system::{RunError, Stop, System};
 use springpot_scenario::{Cases, Plan};
 use std::io;
@@ -24,8 +24,18 @@ pub(super) trait Sink {
     /// Keeps what it takes to go on.
     fn keep(&mut self, plan: &Plan, system: &System, resumed: Resumed) -> io::Result<()>;
 
-    /// What the metrics are of the rows so far, with their gradients back through `tape`, where there is one.
-    fn metrics(&self, plan: &Plan, tape: Option<&Tape>) -> CaseMetrics;
+    /// What the metrics are of the rows so far, with their gradients back through a tape, where there is one.
+    ///
+    /// # Errors
+    /// What keeps the tape from being gone back through.
+    fn metrics(&self, plan: &Plan, back: Option<Back>) -> Result<CaseMetrics, RunError>;
+}
+
+/// What a run is gone back through by, until it is stopped.
+#[derive(Clone, Copy)]
+pub(super) struct Back<'a> {
+    pub(super) tape: &'a Tape,
+    pub(super) stop: &'a Stop,
 }
 
 /// Where an earlier run left a case.
@@ -88,17 +98,18 @@ pub(super) fn simulate(
     };
     let limits = rows.watch.passed();
     let lost = rows.losses.as_ref().map_or_else(Vec::new, |losses| losses.lost().to_vec());
-    let mut tape = None;
-    let (error, interrupted) = match outcome {
-        Ok(kept) => {
-            tape = kept;
-            (None, false)
-        }
+    let outcome = outcome.and_then(|tape| sink.metrics(&plan, tape.as_ref().map(|tape| Back { tape, stop })));
+    let (error, interrupted, metrics) = match outcome {
+        Ok(metrics) => (None, false, Some(metrics)),
         // What was kept last is what can be gone on from.
         Err(RunError::Output(error)) => return Err(error),
-        Err(error) => (Some(Trouble::of(&error, &plan)), matches!(error, RunError::Interrupted { .. })),
+        Err(error) => (Some(Trouble::of(&error, &plan)), matches!(error, RunError::Interrupted { .. }), None),
     };
-    let (no_ledger, mut metrics) = (why_no_ledger(&system, &report), sink.metrics(&plan, tape.as_ref()));
+    let mut metrics = match metrics {
+        Some(metrics) => metrics,
+        None => sink.metrics(&plan, None).unwrap_or_default(),
+    };
+    let no_ledger = why_no_ledger(&system, &report);
     metrics.derivatives.lost = lost;
     Ok(Ran { report, error, interrupted, no_ledger, limits, metrics })
 }

@@ -4,9 +4,9 @@ use super::Layout;
 use super::events::CaseEvents;
 use super::kept::Kept;
 use super::metrics::CaseMetrics;
+use super::simulate::Back;
 use crate::table::{Statistics, push_fields, push_number, push_text};
-use springpot::sensitivity::Tape;
-use springpot::system::System;
+use springpot::system::{RunError, System};
 use springpot_scenario::{Cases, Plan, SweptValue};
 
 /// Statistics, events, and what figures and metrics keep of a case.
@@ -52,14 +52,14 @@ impl<'a> Taken<'a> {
     }
 
     /// What the metrics are of the rows so far, and what matters most.
-    pub(super) fn metrics(&self, plan: &Plan, tape: Option<&Tape>) -> CaseMetrics {
+    pub(super) fn metrics(&self, plan: &Plan, back: Option<Back>) -> Result<CaseMetrics, RunError> {
         let kept = self.kept.as_ref();
-        let own = |kept: &Kept| kept.metrics(self.layout, (plan, tape), &self.lead);
-        let mut metrics = kept.map_or_else(CaseMetrics::default, own);
+        let own = |kept: &Kept| kept.metrics(self.layout, (plan, back), &self.lead);
+        let mut metrics = kept.map_or_else(|| Ok(CaseMetrics::default()), own)?;
         if let Some(sensitivity) = &plan.sensitivity {
             metrics.derivatives.rank(self.layout, sensitivity, &self.statistics, &self.lead);
         }
-        metrics
+        Ok(metrics)
     }
 }
 

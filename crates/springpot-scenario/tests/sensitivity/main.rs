@@ -1,5 +1,6 @@
 //! Derivatives by the numbers of a file: from paths to columns, against differences of whole runs, and what is refused.
 
+mod back;
 mod changes;
 mod control;
 mod free;
@@ -168,6 +169,7 @@ fn compare(text: &str, columns: &[&str], paths: &[(&str, f64)]) {
 fn compare_within(share: f64, text: &str, columns: &[&str], paths: &[(&str, f64)]) {
     let mut asked = scenario(text);
     let all: Vec<&str> = paths.iter().map(|(path, _)| *path).collect();
+    back::goes_back(text, columns, &all);
     asked.differentiate(&all.join(",")).unwrap();
     let asked = plan(&asked).unwrap_or_else(|refusals| panic!("{refusals}"));
     let told: Vec<String> =

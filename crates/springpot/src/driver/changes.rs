@@ -3,7 +3,7 @@
 use super::time_loop::Driver;
 use crate::account::recorder::Recorder;
 use crate::equations::context::Context;
-use crate::equations::{Node, Tape, Variation};
+use crate::equations::{Node, Variation};
 use crate::observe::{ElementQuantity, Quantity, Snapshot};
 use crate::sensitivity::{Lost, Switched};
 use crate::signal::{Jet, Signal};
@@ -18,31 +18,10 @@ const BACKWARDS: [f64; 4] = [-4.0, 3.0, -4.0 / 3.0, 0.25];
 const GRAZES: f64 = 1e-9;
 
 impl Driver {
-    /// Where derivatives ended.
+    /// Where derivatives ended, but of a run that is gone back through.
     pub(super) fn lost(&self) -> impl Iterator<Item = &Lost> {
-        self.recorder.variation.iter().flat_map(|variation| variation.lost()).flatten()
-    }
-
-    /// Whether the run is kept, to go back through it.
-    pub(super) fn is_recorded(&self) -> bool {
-        self.recorder.recording.is_some()
-    }
-
-    /// Keeps row `number`, which was read into `snapshot`, at θ of the step at hand or between two, where the run is kept.
-    ///
-    /// # Errors
-    /// What has no derivative.
-    pub(super) fn keep_row(&mut self, theta: Option<f64>, number: usize, snapshot: &Snapshot) -> Result<(), RunError> {
-        let Recorder { equations, recording, .. } = &mut self.recorder;
-        if let Some(recording) = recording {
-            recording.keep_row(equations, theta, number, snapshot)?;
-        }
-        Ok(())
-    }
-
-    /// What was kept of the run.
-    pub(super) fn into_tape(self) -> Option<Tape> {
-        self.recorder.recording.map(|recording| recording.into_tape())
+        let variation = self.recorder.variation.iter().filter(|_| !self.is_recorded());
+        variation.flat_map(|variation| variation.lost()).flatten()
     }
 
     /// What parameters change on the far side of what was crossed, where velocities and accelerations were `before`; at a change of the robot's own
@@ -52,10 +31,7 @@ impl Driver {
     /// Where derivatives cannot go on.
     pub(super) fn settle_variation(&mut self, before: [&[f64]; 2], is_own: bool) -> Result<(), RunError> {
         let Recorder { evaluations: [at, ..], equations, variation, recording, .. } = &mut self.recorder;
-        if let Some(recording) = recording {
-            let a = self.solver.stepper().starts_with().map_or(&at.a[..], |[_, a]| a);
-            recording.settle(equations, Node { t: at.t, q: &at.q, v: &at.v, a }, [before, [&at.v, &at.a]], is_own)?;
-        }
+        recording.iter_mut().for_each(|recording| recording.note(false));
         if let Some(variation) = variation {
             let a = self.solver.stepper().starts_with().map_or(&at.a[..], |[_, a]| a);
             variation.settle(equations, Node { t: at.t, q: &at.q, v: &at.v, a }, [before, [&at.v, &at.a]], is_own)?;

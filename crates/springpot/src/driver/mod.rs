@@ -11,6 +11,7 @@ mod equation;
 mod events;
 mod limits;
 mod output;
+mod recorded;
 mod report;
 mod roots;
 mod rows;
@@ -22,8 +23,9 @@ mod written;
 
 pub use equation::{ElementTerm, Equation, EquationError};
 pub use limits::{LimitKind, LimitWatch, PassedLimit, Watch};
+pub use recorded::{MOST_KEPT, Tape};
 pub use report::Report;
 pub use rows::Rows;
-pub use run::{record, resume, run};
+pub use run::{record, record_within, resume, run};
 pub use simulation::Simulation;
 pub use state::{Checkpoint, SimulationState};

@@ -83,6 +83,8 @@ impl<'a> Output<'a> {
         self.take_row(cx, driver)?;
         self.follow_event(cx, driver, later)?;
         self.tell_lost(driver);
+        // Back through a run, columns stand for other things than parameters.
+        let later = if driver.is_recorded() { &[] } else { later };
         self.rows.event(event, &self.row, later)?;
         Ok(())
     }

@@ -2,25 +2,49 @@
 
 use super::events::{Next, Watch, WatchState};
 use super::output::Output;
+use super::recorded::{Kept, MOST_KEPT, Tape};
 use super::report::Report;
 use super::rows::Rows;
 use super::state::Checkpoint;
 use super::time_loop::{Driver, RowsAhead};
 use super::written::Written;
-use crate::equations::Tape;
 use crate::equations::context::Context;
 use crate::system::System;
 use crate::system::error::RunError;
 use crate::system::settings::{Settings, Stop};
 use std::sync::atomic::Ordering;
 
+/// A run that begins, or goes on: its driver, what it has written, and what its events know.
+pub(super) struct Begun {
+    pub(super) driver: Result<Driver, RunError>,
+    written: Written,
+    events: WatchState,
+}
+
+impl Begun {
+    pub(super) fn new(system: &System, settings: &Settings, stop: &Stop, looked_ahead: impl FnOnce(&Driver)) -> Self {
+        let driver = Driver::new(system.context(), settings, stop, looked_ahead);
+        Self { driver, written: Written::default(), events: WatchState::default() }
+    }
+
+    pub(super) fn again(
+        system: &System,
+        settings: &Settings,
+        checkpoint: Checkpoint,
+        stop: &Stop,
+        looked_ahead: impl FnOnce(&Driver),
+    ) -> Self {
+        let Checkpoint { driver, written, events } = checkpoint;
+        let driver = Driver::resume(events.cx(system), settings, driver, stop, looked_ahead);
+        Self { driver, written, events }
+    }
+}
+
 /// Runs `system` as its motion says and hands every row to `rows`.
 ///
 /// The report is true also where the run stops early: all rows up to `t_reached` were handed over.
 pub fn run(system: &System, settings: &Settings, rows: &mut dyn Rows, stop: &Stop) -> (Report, Result<(), RunError>) {
-    let looked_ahead = |driver: &Driver| driver.switches().into_iter().for_each(|switches| rows.looked_ahead(switches));
-    let driver = Driver::new(system.context(), settings, stop, looked_ahead);
-    let (report, outcome) = go(system, driver, rows, (Written::default(), WatchState::default()), stop);
+    let (report, outcome) = record(system, settings, rows, stop);
     (report, outcome.map(drop))
 }
 
@@ -31,9 +55,22 @@ pub fn record(
     rows: &mut dyn Rows,
     stop: &Stop,
 ) -> (Report, Result<Option<Tape>, RunError>) {
+    record_within(system, settings, rows, stop, MOST_KEPT)
+}
+
+/// As [`record`], keeping `most` bytes of it at most: whatever it is, gradients have the same bits.
+pub fn record_within(
+    system: &System,
+    settings: &Settings,
+    rows: &mut dyn Rows,
+    stop: &Stop,
+    most: usize,
+) -> (Report, Result<Option<Tape>, RunError>) {
     let looked_ahead = |driver: &Driver| driver.switches().into_iter().for_each(|switches| rows.looked_ahead(switches));
-    let driver = Driver::new(system.context(), settings, stop, looked_ahead);
-    go(system, driver, rows, (Written::default(), WatchState::default()), stop)
+    let begun = Begun::new(system, settings, stop, looked_ahead);
+    let mut kept = Kept::new(most, false);
+    let (report, outcome) = go(system, begun, rows, &mut kept, stop);
+    (report, outcome.map(|sizes| sizes.map(|sizes| Tape::new(system, settings, kept, sizes))))
 }
 
 /// Goes on with a run of this very `system` and these `settings` from where its `checkpoint` was taken: rows that are still to
@@ -45,36 +82,36 @@ pub fn resume(
     rows: &mut dyn Rows,
     stop: &Stop,
 ) -> (Report, Result<(), RunError>) {
-    let Checkpoint { driver, written, events } = checkpoint;
     let looked_ahead = |driver: &Driver| driver.switches().into_iter().for_each(|switches| rows.looked_ahead(switches));
-    let driver = Driver::resume(events.cx(system), settings, driver, stop, looked_ahead);
-    let (report, outcome) = go(system, driver, rows, (written, events), stop);
+    let begun = Begun::again(system, settings, checkpoint, stop, looked_ahead);
+    let (report, outcome) = go(system, begun, rows, &mut Kept::new(MOST_KEPT, false), stop);
     (report, outcome.map(drop))
 }
 
-fn go(
+/// Goes to the end, or to that of a stretch that is run again: gives the sizes of what was recorded, where anything was.
+pub(super) fn go(
     system: &System,
-    driver: Result<Driver, RunError>,
+    Begun { driver, written, events }: Begun,
     rows: &mut dyn Rows,
-    (written, events): (Written, WatchState),
+    kept: &mut Kept,
     stop: &Stop,
-) -> (Report, Result<Option<Tape>, RunError>) {
+) -> (Report, Result<Option<[usize; 4]>, RunError>) {
     let mut driver = match driver {
         Ok(driver) => driver,
         Err(error) => return (Report::default(), Err(error)),
     };
     let mut output = Output::new(system.context(), rows, written);
     let events = Watch::new(system, &driver.recorder.settings, events, stop);
-    let outcome = events.and_then(|events| to_the_end(system, &mut driver, &mut output, events, stop));
+    let outcome = events.and_then(|events| to_the_end(system, &mut driver, (&mut output, &mut *kept), events, stop));
     let report = output.report(&driver);
-    (report, outcome.map(|()| driver.into_tape()))
+    (report, outcome.map(|()| kept.end(&mut driver)))
 }
 
 /// Takes step after step, `output` writing the rows.
 fn to_the_end(
     system: &System,
     driver: &mut Driver,
-    output: &mut Output,
+    (output, kept): (&mut Output, &mut Kept),
     mut events: Watch,
     stop: &Stop,
 ) -> Result<(), RunError> {
@@ -90,6 +127,15 @@ fn to_the_end(
         }
         if driver.has_ended() {
             return verdict(events.cx(system), driver, output);
+        }
+        if driver.is_recorded() {
+            let checkpoint = |driver: &Driver| {
+                let (state, written) = (driver.state(events.cx(system)), output.written);
+                Checkpoint { driver: state, written, events: events.state().clone() }
+            };
+            if kept.look(driver, checkpoint)? {
+                return Ok(());
+            }
         }
         let (t, stopped) = (driver.reached(), stop.load(Ordering::Relaxed));
         if output.rows.wants_checkpoint(t, stopped) && !driver.is_recorded() {

@@ -9,11 +9,11 @@ use crate::dynamics::Kinematics;
 use crate::elements::MemoryRange;
 use crate::equations::context::{Context, Held};
 use crate::equations::control::{Eye, Sampler};
-use crate::equations::{Node, Recording, Variation, VariationState};
+use crate::equations::{Equations, Node, Recording, Variation, VariationState};
 use crate::methods::solver::Solver;
 use crate::methods::stepper::{Behind, Target, Trial};
 use crate::observe::{Needs, Snapshot};
-use crate::sensitivity::SensitivityError;
+use crate::sensitivity::Sensitivity;
 use crate::signal::watched::FINEST;
 use crate::signal::{self, Agenda};
 use crate::system::Motion;
@@ -58,7 +58,7 @@ pub(super) struct Driver {
     /// What looks at the mass matrix of robots where it may be indefinite.
     definite: Option<Definite>,
     /// Laws that are sampled, where there are some.
-    sampler: Option<Box<Sampler>>,
+    pub(super) sampler: Option<Box<Sampler>>,
     /// What the signals do.
     agenda: Agenda,
     longest_step: f64,
@@ -117,7 +117,8 @@ impl Driver {
         self.recorder.open(cx, first)?;
         self.begin_variation(cx)?;
         let Recorder { equations, variation, settings, .. } = &self.recorder;
-        let longest = variation.as_ref().map(|variation| variation.longest_first(equations, settings.rtol));
+        let sharing = variation.as_ref().filter(|variation| variation.shares_in_steps());
+        let longest = sharing.map(|variation| variation.longest_first(equations, settings.rtol));
         let first = longest.filter(|_| settings.first_step.is_none()).map_or(first, |longest| first.min(longest));
         self.h = self.aligned(first);
         self.planned = self.h;
@@ -130,25 +131,22 @@ impl Driver {
         let Recorder { evaluations: [at, ..], equations, variation, recording, settings, takes_elements_work, .. } =
             recorder;
         let Some(by) = &cx.system.sensitivity else { return Ok(()) };
-        if let Some(quantities) = &by.adjoint {
-            if !self.solver.stepper().is_recorded() {
-                return Err(SensitivityError::Backwards { what: "steps of one size, or a given motion".into() }.into());
-            }
-            let a = self.solver.stepper().starts_with().map_or(&at.a[..], |[_, a]| a);
-            let start = Node { t: at.t, q: &at.q, v: &at.v, a };
-            let mut begun = Recording::begin(cx.system, by, quantities, equations, start)?;
-            // Where the memories are built anew.
-            recording.take().into_iter().for_each(|earlier| begun.take_start(*earlier));
-            *recording = Some(Box::new(begun));
-            return Ok(());
-        }
         let has_fixed_steps = self.solver.stepper().fixed_step().is_some();
-        let mut begun = Variation::new(cx.system, by, equations, has_fixed_steps)?;
+        let (recorded, by) = recording_of(cx, by, equations, (sampler.as_deref(), has_fixed_steps));
+        let mut begun = Variation::new(cx.system, &by, equations, has_fixed_steps)?;
         begun.hold(sampler.as_ref().and_then(|sampler| sampler.held_changes()));
         let [v, a] = self.solver.stepper().starts_with().unwrap_or([&at.v, &at.a]);
         let range = MemoryRange { tolerance: settings.memory_rtol, shortest: 0.0, horizon: settings.end };
         let start = [Node { t: at.t, q: &at.q, v: &at.v, a: &at.a }, Node { t: at.t, q: &at.q, v, a }];
         begun.begin(cx.system, equations, start, (range, *takes_elements_work))?;
+        if let Some(mut recorded) = recorded {
+            // Where the memories are built anew.
+            if let (Some(earlier), Some(variation)) = (recording.take(), variation.as_deref_mut()) {
+                recorded.take_start(*earlier, variation);
+            }
+            recorded.attach(&mut begun);
+            *recording = Some(Box::new(recorded));
+        }
         *variation = Some(Box::new(begun));
         Ok(())
     }
@@ -156,17 +154,18 @@ impl Driver {
     /// Goes on with what parameters changed, where any are asked for.
     fn load_variation(&mut self, cx: Context, state: Option<VariationState>) -> Result<(), RunError> {
         let Self { sampler, recorder, .. } = self;
-        let Recorder { evaluations: [at, ..], equations, variation, .. } = recorder;
+        let Recorder { evaluations: [at, ..], equations, variation, recording, .. } = recorder;
         let Some(by) = &cx.system.sensitivity else { return Ok(()) };
         let has_fixed_steps = self.solver.stepper().fixed_step().is_some();
-        let mut loaded = Variation::new(cx.system, by, equations, has_fixed_steps)?;
+        let (recorded, by) = recording_of(cx, by, equations, (sampler.as_deref(), has_fixed_steps));
+        let mut loaded = Variation::new(cx.system, &by, equations, has_fixed_steps)?;
         loaded.hold(sampler.as_ref().and_then(|sampler| sampler.held_changes()));
         let [v, a] = self.solver.stepper().starts_with().unwrap_or([&at.v, &at.a]);
         let start = Node { t: at.t, q: &at.q, v, a };
         if !state.is_some_and(|state| loaded.load(state, equations, start)) {
             return Err(RunError::OtherRun);
         }
-        *variation = Some(Box::new(loaded));
+        (*variation, *recording) = (Some(Box::new(loaded)), recorded.map(Box::new));
         Ok(())
     }
 
@@ -316,7 +315,7 @@ impl Driver {
         }
         let acting = self.acting();
         let cx = Context { sampled: &acting, ..cx };
-        let varies = self.recorder.variation.is_some() || self.recorder.recording.is_some();
+        let varies = self.recorder.variation.is_some();
         if varies {
             self.vary_switches(cx, [self.t, after]);
         }
@@ -416,6 +415,7 @@ impl Driver {
                 return Err(RunError::Interrupted { t: self.t });
             }
             let target = self.target(until, rows);
+            self.begin_recording();
             match try_step(self.solver.stepper_mut(), cx, &mut self.recorder, target)? {
                 Trial::Accepted { step, next } => {
                     self.check_definite(cx, &step)?;
@@ -741,6 +741,19 @@ impl Driver {
             ..Report::default()
         }
     }
+}
+
+/// By what a run is differentiated: with columns of its own where it is recorded, to go back through it.
+fn recording_of(
+    cx: Context,
+    by: &Arc<Sensitivity>,
+    equations: &Equations,
+    (sampler, has_fixed_steps): (Option<&Sampler>, bool),
+) -> (Option<Recording>, Arc<Sensitivity>) {
+    let Some(quantities) = &by.adjoint else { return (None, by.clone()) };
+    let samples = sampler.map_or(0, Sampler::numbers);
+    let (recording, by) = Recording::of(cx.system, by, quantities, equations, (samples, has_fixed_steps));
+    (Some(recording), by)
 }
 
 /// The end of a step of size h from t that must not pass `stop`; the last two steps before it share what is left.

@@ -37,5 +37,7 @@ pub(crate) use scale::Scale;
 pub(crate) use solve::Solve;
 pub(crate) use state::EquationsState;
 pub use steady::SteadyError;
-pub(crate) use variation::{Found, ROW, Recording, STAGE, StepErrors, TANGENTS, Told, Variation, VariationState};
-pub use variation::{Share, Tape};
+pub use variation::Share;
+pub(crate) use variation::{
+    Backwards, Entries, Found, ROW, Recording, STAGE, Starts, StepErrors, TANGENTS, Told, Variation, VariationState,
+};

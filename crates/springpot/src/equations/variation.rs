@@ -27,10 +27,11 @@ use crate::law::past::Begun;
 use crate::law::variation::{LawVariation, ObservationVariation, PointVariation, StepVariation};
 use crate::law::{Network, Response, Start};
 use crate::model::{FrictionLaw, Model};
+use crate::observe::Quantity;
 use crate::sensitivity::{Seed, Sensitivity, SensitivityError};
 use crate::system::{Motion, System};
-pub(crate) use adjoint::Recording;
-pub use adjoint::{Share, Tape};
+pub use adjoint::Share;
+pub(crate) use adjoint::{Backwards, Entries, Recording, Starts};
 use energies::Works;
 pub(crate) use found::Found;
 use inertias::Inertias;
@@ -257,6 +258,11 @@ impl Variation {
     /// Number of velocities of the extended robot.
     pub(crate) fn nv(&self) -> usize {
         self.system.model.nv()
+    }
+
+    /// Whether what changes of a quantity is what changes of the motion alone.
+    pub(crate) fn is_motion(&self, of: Quantity) -> bool {
+        Self::is_of_motion(&self.system.model, of)
     }
 
     /// Which velocity of the extended robot each of these of the run is.

@@ -86,4 +86,4 @@ pub use step::{Form, RatePolynomial};
 pub use tangent::{
     EnergyTangent, MemoryTangent, RecalledTangent, Singular, TangentEnd, TangentPoint, TangentSeeds, TangentStep,
 };
-pub(crate) use tangent::{MemoryAdjoint, PastOfStep, PortColumns};
+pub(crate) use tangent::{MemoryAdjoint, OfStep, PastOfStep, PortColumns, Told};

@@ -91,7 +91,7 @@ impl State {
     }
 
     /// How large it is.
-    pub(super) fn size(&self) -> StateSize {
+    pub(crate) fn size(&self) -> StateSize {
         StateSize { memories: self.memories.len(), variables: self.variables.len() }
     }
 

@@ -1,7 +1,5 @@
 //! What parameters change of a law: beside every number a block of derivatives, one for each parameter.
 
-pub(crate) mod probe;
-
 use super::network::Network;
 use super::state::{State, StateSize};
 use super::step::{InputValue, Point, Step};

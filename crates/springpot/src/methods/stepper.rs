@@ -143,11 +143,6 @@ pub(crate) trait Stepper: std::fmt::Debug + Send + Sync {
         None
     }
 
-    /// Whether a recording can be made of its steps, to go back through them.
-    fn is_recorded(&self) -> bool {
-        false
-    }
-
     /// Takes over what changes where the step starts.
     ///
     /// # Errors

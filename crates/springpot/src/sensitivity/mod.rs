@@ -1,6 +1,6 @@
 //! What a run is differentiated by: numbers of its system, and what each of them moves.
 
-pub use crate::equations::{Share, Tape};
+pub use crate::equations::Share;
 
 use crate::control::{Controller, ControllerNumber, ErrorTerm, FeedbackSlope, TermChange};
 use crate::law::Network;
@@ -25,7 +25,7 @@ pub struct Sensitivity {
     /// The derivatives that rows tell, in their order.
     pub columns: Vec<DerivativeColumn>,
     /// Go back through the run in place of beside it: quantities of which rows are kept, so that a number that is made of them can be differentiated at
-    /// its end ([`Tape::gradients`]). Nothing shares in the choice of steps then, and rows tell no derivatives.
+    /// its end ([`crate::driver::Tape::gradients`]). Nothing shares in the choice of steps then, and rows tell no derivatives.
     pub adjoint: Option<Vec<Quantity>>,
 }
 

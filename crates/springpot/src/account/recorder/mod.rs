@@ -219,9 +219,7 @@ impl Recorder {
         if let Some(variation) = &mut self.variation {
             variation.commit(&self.equations);
         }
-        if let Some(recording) = &mut self.recording {
-            recording.commit(&self.equations, self.evaluations[STAGES].t)?;
-        }
+        self.recording.iter_mut().for_each(|recording| recording.note(true));
         self.equations.stand(leaning);
         let (actuators, joints) = self.work_until(1.0);
         let end = &self.evaluations[STAGES];

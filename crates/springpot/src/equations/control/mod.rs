@@ -175,6 +175,11 @@ pub(crate) struct ControlState {
 }
 
 impl ControlRun {
+    /// How many numbers its derivatives keep from step to step, and of how many memories.
+    pub(crate) fn kept(&self) -> [usize; 2] {
+        [4 * self.terms.len() + self.joints.len(), self.terms.len()]
+    }
+
     /// Of a system that is controlled; `has_fixed_steps`: in steps of one size.
     pub(crate) fn of(system: &System, has_fixed_steps: bool) -> Option<Box<Self>> {
         let control = system.control.clone();

@@ -276,6 +276,21 @@ impl Sampler {
         Ok(())
     }
 
+    /// How many numbers its changes are at most.
+    pub(crate) fn numbers(&self) -> usize {
+        let nv = self.state.said.len();
+        let sizes = self.laws.iter().zip(&self.said).map(|(law, said)| (law.sampling.delay + 1) * said.len());
+        2 * nv + sizes.sum::<usize>()
+    }
+
+    /// Every block of its changes, of `count` numbers.
+    pub(crate) fn each_block(&mut self, count: usize, take: &mut dyn FnMut(&mut [f64])) {
+        let Some(Changes { waiting, acting, said }) = &mut self.state.changes else { return };
+        let blocks = waiting.iter_mut().flatten().chain([said, &mut acting.torques]);
+        let blocks = blocks.chain(acting.inputs.iter_mut().map(|(.., by)| by));
+        blocks.for_each(|own| own.chunks_exact_mut(count).for_each(&mut *take));
+    }
+
     /// What changes of what acts, where anything is differentiated.
     pub(crate) fn held_changes(&self) -> Option<&HeldVariation> {
         self.state.changes.as_ref().map(|changes| &changes.acting)

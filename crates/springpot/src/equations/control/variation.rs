@@ -16,7 +16,7 @@ use super::{ControlRun, Target};
 use crate::collocation::STAGES;
 use crate::control::{Aim, ControllerVariation, Feedback, FeedbackSlope, Scratch, Sense, TorqueSlopes};
 use crate::dynamics::Kinematics;
-use crate::fractional::KernelError;
+use crate::fractional::{KernelError, MemoryTangent};
 use crate::model::Model;
 use crate::sensitivity::{Seed, Sensitivity, SensitivityError};
 use crate::system::System;
@@ -414,6 +414,34 @@ impl ControlVariation {
             self.terms[m].commit_ends(&run.terms[m], run.end_of_term(m), &ends);
         }
         self.nodes.swap(0, STAGES);
+    }
+
+    /// Every block that outlasts a step; of memories what they keep beside their modes.
+    pub(crate) fn each_block(&mut self, take: &mut dyn FnMut(&mut [f64])) {
+        for term in &mut self.terms {
+            take(&mut term.integral);
+            term.tangent.kept_mut().into_iter().for_each(&mut *take);
+        }
+        self.joints.iter_mut().for_each(|joint| take(&mut joint.from));
+    }
+
+    /// The memories of its terms.
+    pub(crate) fn memories_mut(&mut self) -> impl Iterator<Item = &mut MemoryTangent> {
+        self.terms.iter_mut().map(|term| &mut term.tangent)
+    }
+
+    /// Whether branches were left whose changes are not crossed yet.
+    pub(crate) fn leaves_branches(&self) -> bool {
+        !self.left.is_empty()
+    }
+
+    /// What is held changes in another way where the step starts.
+    pub(crate) fn stand_again(&mut self) {
+        let [start, ..] = &mut self.nodes;
+        for (e, input, by) in &self.held.inputs {
+            let own = start.inputs.iter_mut().filter(|(own_e, own_input, ..)| (own_e, own_input) == (e, input));
+            own.for_each(|(.., own)| own.copy_from_slice(by));
+        }
     }
 
     /// What outlasts the steps.

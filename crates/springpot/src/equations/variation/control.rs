@@ -31,6 +31,11 @@ impl Variation {
         }
     }
 
+    /// Whether branches of control were left whose changes are not crossed yet.
+    pub(super) fn leaves_branches(&self) -> bool {
+        self.control.as_ref().is_some_and(|control| control.leaves_branches())
+    }
+
     /// Whether the actuator force in the equation of velocity `row` is held, whatever else says what it is.
     pub(crate) fn is_held(&self, row: usize) -> bool {
         self.saltation.held.drives().any(|(k, _)| self.own_v[k] == row)

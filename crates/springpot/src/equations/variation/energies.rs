@@ -1,5 +1,6 @@
 //! What parameters change of what is dissipated, supplied and lost since t = 0.
 
+use super::adjoint::keeps_works;
 use super::{ROW, Variation, at_start, felt, of_step};
 use crate::collocation::{Nodes, STAGES};
 use crate::dynamics::{coriolis, gravity, kinetic_energy, potential_energy};
@@ -7,7 +8,7 @@ use crate::equations::assembly::Equations;
 use crate::equations::resistance::{direction, each_loss_slope};
 use crate::law::variation::{ObservationVariation, PowersVariation};
 use crate::law::{Power, Powers};
-use crate::observe::{ElementQuantity, EnergyQuantity, Quantity};
+use crate::observe::Quantity;
 use crate::sensitivity::{Seed, Sensitivity};
 use crate::signal::Signal;
 use crate::system::{Action, Event, Motion, Setting};
@@ -66,16 +67,16 @@ impl Works {
     /// Of steps of one size, whose flows are told at their ends alone, nothing is kept.
     pub(super) fn new(by: &Sensitivity, elements: usize, has_fixed_steps: bool) -> Self {
         let count = by.parameters.len();
-        let asks = |of: Quantity| match of {
-            Quantity::Element(_, of) => matches!(of, ElementQuantity::Dissipated | ElementQuantity::Input),
-            Quantity::Energy(of) => matches!(of, EnergyQuantity::Actuators | EnergyQuantity::Joints),
-            _ => false,
+        let asked: Vec<Quantity> = by.columns.iter().map(|column| column.of).collect();
+        let asks = match &by.adjoint {
+            Some(quantities) => keeps_works(quantities),
+            // Who names no columns asks for any of them.
+            None => asked.is_empty() || keeps_works(&asked),
         };
         let blocks = || vec![0.0; count];
         let each = || (0..elements).map(|_| [blocks(), blocks()]).collect();
         Self {
-            // Who names no columns asks for any of them.
-            is_kept: !has_fixed_steps && (by.columns.is_empty() || by.columns.iter().any(|column| asks(column.of))),
+            is_kept: !has_fixed_steps && asks,
             done: WorksDone { elements: each(), joints: blocks(), origin: blocks(), crossed: None, last: Vec::new() },
             flows: None,
             row: (each(), blocks()),
@@ -85,6 +86,16 @@ impl Works {
     /// The flows of another step are asked for from now on.
     pub(super) fn forget(&mut self) {
         self.flows = None;
+    }
+
+    /// Every block that steps change.
+    pub(super) fn each_block(&mut self, take: &mut dyn FnMut(&mut [f64])) {
+        if !self.is_kept {
+            return;
+        }
+        let WorksDone { elements, joints, crossed, .. } = &mut self.done;
+        let crossed = crossed.iter_mut().map(|crossed| &mut crossed.later);
+        elements.iter_mut().flatten().chain([joints]).chain(crossed).for_each(|block| take(block));
     }
 
     pub(super) fn save(&self) -> WorksDone {
@@ -156,6 +167,13 @@ impl Variation {
     pub(crate) fn lose_supplied(&mut self, e: usize) {
         let [_, supplied] = &mut self.works.done.elements[e];
         supplied.fill(f64::NAN);
+    }
+
+    /// Makes sure that the flows of the step at hand are known where anybody asks for works.
+    pub(crate) fn prepare_works(&mut self, equations: &Equations) {
+        if self.works.is_kept {
+            self.flow(equations);
+        }
     }
 
     /// Works out the flows of the step at hand, whose motion is known, where that was not done.

@@ -63,6 +63,14 @@ impl Saltation {
         }
     }
 
+    /// Every block of it.
+    pub(super) fn each_block(&mut self, take: &mut dyn FnMut(&mut [f64])) {
+        let Self { later, last, held: SetVariation { drives, inputs }, .. } = self;
+        let last = last.iter_mut().map(|(_, later)| later);
+        let held = drives.iter_mut().map(|(_, by)| by).chain(inputs.iter_mut().map(|(_, by)| by));
+        later.iter_mut().chain(last).chain(held).for_each(|block| take(block));
+    }
+
     /// Whether it is of so many parameters.
     pub(super) fn fits(&self, count: usize) -> bool {
         self.lost.len() == count

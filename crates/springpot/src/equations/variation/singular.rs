@@ -64,6 +64,13 @@ impl Singular {
         Self { is_there: false, starts_regular: true, elements: vec![share; elements] }
     }
 
+    /// Every block that outlasts a step.
+    pub(super) fn each_block(&mut self, count: usize, take: &mut dyn FnMut(&mut [f64])) {
+        for own in self.elements.iter_mut().filter(|_| self.is_there) {
+            take(&mut own.force_change[..count]);
+        }
+    }
+
     pub(super) fn save(&self, count: usize) -> SingularState {
         let before = |own: &Share| (own.force[0], own.force_change[..count].to_vec());
         SingularState {

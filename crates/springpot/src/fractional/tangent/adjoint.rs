@@ -3,6 +3,7 @@
 //! With ∂m/∂z of the modes behind a step, that of its piece is ∂m/∂u_p = h Σ_k ψ_p(X_k) ∂m/∂z_k, and of the modes in front of it e^{−X_k} ∂m/∂z_k, X =
 //! λ_k h. What a lag τ of the past tells adds w_k e^{−λ_k τ} ∂m/∂(that).
 
+use super::ports::{Told, Weights};
 use crate::fractional::exponentials::moments;
 use crate::fractional::history::History;
 use std::sync::Arc;
@@ -19,11 +20,23 @@ pub(crate) struct PastOfStep {
     /// How many modes were put in front behind it, and how many of the fastest were dropped.
     front: usize,
     surplus: usize,
+    /// How modes behind it, and the coefficients of its piece, follow where its end moves.
+    pub(super) moved: Option<Weights>,
 }
 
 impl PastOfStep {
     pub(super) fn new(kernel: Arc<History>, past: &History, h: f64, [front, surplus]: [usize; 2]) -> Self {
-        Self { kernel, is_first: past.is_empty(), widths: [past.last().0, h], front, surplus }
+        Self { kernel, is_first: past.is_empty(), widths: [past.last().0, h], front, surplus, moved: None }
+    }
+
+    /// Whether its end moves.
+    pub(crate) fn has_moved(&self) -> bool {
+        self.moved.is_some()
+    }
+
+    /// How much it holds beside its kernel, bytes.
+    pub(crate) fn bytes(&self) -> usize {
+        size_of::<Self>() + self.moved.as_ref().map_or(0, Weights::bytes)
     }
 }
 
@@ -34,17 +47,21 @@ pub(crate) struct MemoryAdjoint {
     /// By each mode, M numbers each; empty before the last step that was taken into the past.
     modes: Vec<f64>,
     /// By the coefficients of the last piece.
-    pub(crate) piece: [Vec<f64>; 4],
-    pub(crate) travelled: Vec<f64>,
-    pub(crate) now: Vec<f64>,
-    pub(crate) origin: Vec<f64>,
-    told: Vec<Told>,
+    piece: [Vec<f64>; 4],
+    ready: Vec<Ready>,
     taken: Option<Taken>,
+}
+
+/// What counts of the step that was gone back over: of the coefficients of its piece, and of the time by which its end moves.
+#[derive(Debug)]
+pub(crate) struct OfStep {
+    pub(crate) piece: [Vec<f64>; 4],
+    pub(crate) moved: Option<Vec<f64>>,
 }
 
 /// w e^{−X} of all modes of a kernel at a lag.
 #[derive(Debug, Clone)]
-struct Told {
+struct Ready {
     kernel: Arc<History>,
     lag: f64,
     weighted: Vec<f64>,
@@ -66,25 +83,24 @@ impl MemoryAdjoint {
     /// Of nothing, yet.
     pub(crate) fn new(count: usize) -> Self {
         let zeros = || vec![0.0; count];
-        Self {
-            count,
-            modes: Vec::new(),
-            piece: [(); 4].map(|()| zeros()),
-            travelled: zeros(),
-            now: zeros(),
-            origin: zeros(),
-            told: Vec::new(),
-            taken: None,
-        }
+        Self { count, modes: Vec::new(), piece: [(); 4].map(|()| zeros()), ready: Vec::new(), taken: None }
     }
 
-    /// Goes back over the piece that a step added: [`Self::piece`] is complete then, and all else is as before the step but for what of the past the
-    /// step was told. Gives what the piece before the step gets.
-    pub(crate) fn take_back(&mut self, step: &PastOfStep) -> [Vec<f64>; 4] {
+    /// Goes back over the piece that a step added: all is as before the step then, but for what of the past the step was told.
+    pub(crate) fn take_back(&mut self, step: &PastOfStep) -> OfStep {
         let (count, kernel) = (self.count, step.kernel.kernel());
         let [before, h] = step.widths;
         let own = kernel.modes();
         let mut earlier = [(); 4].map(|()| vec![0.0; count]);
+        let moved = step.moved.as_ref().map(|moved| {
+            let mut sum = vec![0.0; count];
+            let parts = moved.piece.iter().zip(&self.piece).map(|(factor, block)| (factor, &block[..]));
+            let modes = moved.modes.iter().zip(self.modes.chunks_exact(count));
+            for (factor, block) in parts.chain(modes) {
+                sum.iter_mut().zip(block).for_each(|(sum, by)| *sum += factor * by);
+            }
+            sum
+        });
         if self.modes.is_empty() {
             self.modes.resize((step.front + own) * count, 0.0);
         } else {
@@ -123,18 +139,36 @@ impl MemoryAdjoint {
             }
         }
         self.modes.drain(..step.front * count);
-        earlier
+        OfStep { piece: std::mem::replace(&mut self.piece, earlier), moved }
     }
 
-    /// What the past told at a lag of a step counts so much.
-    pub(crate) fn tell(&mut self, step: &PastOfStep, lag: f64, by: &[f64]) {
-        if step.is_first || by.iter().all(|by| *by == 0.0) {
+    /// What the past told counts so much; where it was told by a lag, that is one of the step that follows.
+    pub(crate) fn tell(&mut self, step: Option<&PastOfStep>, told: &Told, by: &[f64]) {
+        if by.iter().all(|by| *by == 0.0) {
+            return;
+        }
+        match (told, step) {
+            (Told::Lag(lag), Some(step)) => self.tell_lag(step, *lag, by),
+            (Told::Lag(_), None) => self.piece.iter_mut().for_each(|piece| piece.fill(f64::NAN)),
+            (Told::Sum(Weights { modes, piece }), _) => {
+                self.modes.resize(modes.len() * self.count, 0.0);
+                let own = self.piece.iter_mut().map(|own| &mut own[..]);
+                let blocks = self.modes.chunks_exact_mut(self.count).chain(own);
+                for (block, factor) in blocks.zip(modes.iter().chain(piece)) {
+                    block.iter_mut().zip(by).for_each(|(z, by)| *z += factor * by);
+                }
+            }
+        }
+    }
+
+    fn tell_lag(&mut self, step: &PastOfStep, lag: f64, by: &[f64]) {
+        if step.is_first {
             return;
         }
         let (count, kernel) = (self.count, step.kernel.kernel());
         self.modes.resize(kernel.modes() * count, 0.0);
         let place = self.place(&step.kernel, lag);
-        for (block, weighted) in self.modes.chunks_exact_mut(count).zip(&self.told[place].weighted) {
+        for (block, weighted) in self.modes.chunks_exact_mut(count).zip(&self.ready[place].weighted) {
             block.iter_mut().zip(by).for_each(|(z, by)| *z += weighted * by);
         }
         for k in 1..=kernel.missing(lag) {
@@ -148,15 +182,15 @@ impl MemoryAdjoint {
 
     /// The place of what a lag tells.
     fn place(&mut self, kernel: &Arc<History>, lag: f64) -> usize {
-        let is_it = |told: &Told| told.lag == lag && Arc::ptr_eq(&told.kernel, kernel);
-        if let Some(place) = self.told.iter().position(is_it) {
+        let is_it = |ready: &Ready| ready.lag == lag && Arc::ptr_eq(&ready.kernel, kernel);
+        if let Some(place) = self.ready.iter().position(is_it) {
             return place;
         }
-        if self.told.len() == LAGS {
-            self.told.remove(0);
+        if self.ready.len() == LAGS {
+            self.ready.remove(0);
         }
-        self.told.push(Told { kernel: kernel.clone(), lag, weighted: kernel.weighted(lag) });
-        self.told.len() - 1
+        self.ready.push(Ready { kernel: kernel.clone(), lag, weighted: kernel.weighted(lag) });
+        self.ready.len() - 1
     }
 }
 
@@ -165,4 +199,10 @@ fn settled(lambda: f64, width: f64, share: f64) -> [f64; 4] {
     let mut psi = [0.0; 4];
     moments(lambda * width, &mut psi);
     psi.map(|psi| share * (width * psi))
+}
+
+impl Weights {
+    pub(crate) fn bytes(&self) -> usize {
+        size_of::<Self>() + size_of_val(&self.modes[..])
+    }
 }

@@ -2,6 +2,7 @@
 
 use super::columns::add;
 use super::order::{ByOrder, local_moments};
+use super::ports::{MEAN, Weights, key};
 use super::{MemoryTangent, TangentPoint, TangentStep};
 use crate::collocation::Nodes;
 use crate::fractional::history::History;
@@ -93,6 +94,19 @@ impl MemoryTangent {
             return;
         }
         let at = past.lag(h);
+        let [_, d2, _] = past.fast_tail();
+        if let Some(ports) = &self.ports {
+            let weights = || {
+                let [psi, ..] = past.moments(h).1;
+                let modes = past.kernel().weight.iter().zip(psi).map(|(weight, psi)| weight * psi).collect();
+                Weights { modes, piece: [0, 1, 2, 3].map(|_| d2 / h) }
+            };
+            match ports.column_of_sum(key(MEAN, h, h), weights) {
+                Some(column) => out[column] += 1.0,
+                None => out.fill(f64::NAN),
+            }
+            return;
+        }
         dispatch!(Level::new(), simd => self.modes.contract(
             simd,
             #[inline(always)]
@@ -103,7 +117,6 @@ impl MemoryTangent {
             },
             [&mut *out],
         ));
-        let [_, d2, _] = past.fast_tail();
         (0..4).for_each(|p| add(out, d2 / h, self.piece.row(p)));
     }
 

@@ -92,15 +92,20 @@ impl MemoryTangent {
         // What is paid of a debt stays, however long the step is.
         let debt = end.and_then(|end| memory.debt(polynomial, end.stroke, end.resolution));
         let paid = debt.map_or(0.0, |debt| debt.rate);
-        for (k, (lambda, z)) in past.kernel().lambda.iter().zip(past.modes()).enumerate() {
+        let modes = past.kernel().lambda.iter().zip(past.modes()).map(|(lambda, z)| {
             let mut psi = [0.0; 4];
             moments(lambda * h, &mut psi);
-            add(self.modes.row_mut(k), (rate + paid - lambda * z) - paid * psi[0], delta_h);
-        }
-        add(self.piece.row_mut(0), -paid / h, delta_h);
+            (rate + paid - lambda * z) - paid * psi[0]
+        });
         let [_, u1, u2, u3] = polynomial.u;
-        for (p, slope) in [u1, 2.0 * u2, 3.0 * u3].into_iter().enumerate() {
-            add(self.piece.row_mut(p), slope / h, delta_h);
+        let bent = [u1 / h, 2.0 * u2 / h, 3.0 * u3 / h];
+        match &mut self.ports {
+            Some(ports) => ports.move_end(modes.collect(), [bent[0] - paid / h, bent[1], bent[2], 0.0], delta_h),
+            None => {
+                modes.enumerate().for_each(|(k, share)| add(self.modes.row_mut(k), share, delta_h));
+                add(self.piece.row_mut(0), -paid / h, delta_h);
+                bent.into_iter().enumerate().for_each(|(p, slope)| add(self.piece.row_mut(p), slope, delta_h));
+            }
         }
     }
 

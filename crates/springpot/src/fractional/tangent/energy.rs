@@ -1,11 +1,12 @@
 //! The derivative of what a springpot stores and dissipates.
 
 use super::columns::add;
+use super::ports::{DISSIPATED, STORED, Weights, key};
 use super::{MemoryTangent, TangentPoint, TangentStep};
 use crate::collocation::Nodes;
 use crate::fractional::exponentials::moments;
 use crate::fractional::history::{History, Squares};
-use crate::fractional::lanes::sum;
+use crate::fractional::lanes::{LANES, sum};
 use crate::fractional::memory::{Memory, StepStart};
 use crate::fractional::step::{Form, RatePolynomial};
 use fearless_simd::prelude::*;
@@ -33,6 +34,13 @@ struct Grown {
     by_order: [f64; 2],
 }
 
+/// What both forms have of δz and of δu_p of the last piece, where columns stand for these.
+#[derive(Default)]
+struct OfPast {
+    modes: [Vec<f64>; 2],
+    piece: [[f64; 4]; 2],
+}
+
 impl MemoryTangent {
     /// The derivative of [`Memory::energy`] at θ, 0 ≤ θ ≤ 1, whose kinematics are those of `point`.
     ///
@@ -55,12 +63,14 @@ impl MemoryTangent {
         }
         let polynomial = &step.polynomial;
         let longer = if polynomial.h > 0.0 { past.extended(Nodes::Radau.positions()[0] * polynomial.h) } else { None };
-        let grown = self.add_modes(past, polynomial, theta, out.rows());
+        let mut of_past = self.ports.as_ref().filter(|ports| !ports.has_no_sums()).map(|_| OfPast::default());
+        let grown = self.add_modes(past, polynomial, theta, &mut of_past, out.rows());
         self.add_grown(&grown, theta, delta_u, out.rows());
         if let Some(longer) = &longer {
             let front = longer.kernel().modes() - past.kernel().modes();
-            self.add_front(longer, front, polynomial, theta, delta_u, out.rows());
+            self.add_front(longer, front, (polynomial, theta), delta_u, &mut of_past, out.rows());
         }
+        self.add_told(past, of_past, (theta, polynomial.h), out.rows());
         let settled = longer.as_ref().unwrap_or(past);
         let stored_by = if theta == 0.0 { past } else { settled };
         self.add_settled([stored_by, settled], polynomial, theta, point, delta_u, out.rows());
@@ -90,6 +100,7 @@ impl MemoryTangent {
         past: &History,
         step: &RatePolynomial,
         theta: f64,
+        of_past: &mut Option<OfPast>,
         [stored, dissipation]: [&mut [f64]; 2],
     ) -> Grown {
         let lag = theta * step.h;
@@ -99,32 +110,40 @@ impl MemoryTangent {
         dispatch!(Level::new(), simd => {
             let (mut by_u, mut by_order) = ([[f64x8::splat(simd, 0.0); 4]; 2], [f64x8::splat(simd, 0.0); 2]);
             let mut seen = 0;
-            self.modes.contract(
-                simd,
-                #[inline(always)]
-                |k| {
-                    let [lambda, weight, z] = past.block(simd, k);
-                    let (decay, psi) = at.moments(simd, k);
-                    let value = mode(z, decay, psi, &scaled, lag);
-                    let stored = weight * value;
-                    let forms = [stored, stored * lambda * 2.0];
-                    // Many parameters ask for a block again.
-                    if k == seen {
-                        seen += 1;
-                        for q in 0..2 {
-                            let grown = forms[q] * lag;
-                            for p in 0..4 {
-                                by_u[q][p] += grown * psi[p];
-                            }
-                            if let Some(order) = &self.by_order {
-                                by_order[q] += forms[q] * value * order.ratio(simd, k) * 0.5;
-                            }
+            let mut weights = inlined(#[inline(always)] |k| {
+                let [lambda, weight, z] = past.block(simd, k);
+                let (decay, psi) = at.moments(simd, k);
+                let value = mode(z, decay, psi, &scaled, lag);
+                let stored = weight * value;
+                let forms = [stored, stored * lambda * 2.0];
+                // Many parameters ask for a block again.
+                if k == seen {
+                    seen += 1;
+                    for q in 0..2 {
+                        let grown = forms[q] * lag;
+                        for p in 0..4 {
+                            by_u[q][p] += grown * psi[p];
+                        }
+                        if let Some(order) = &self.by_order {
+                            by_order[q] += forms[q] * value * order.ratio(simd, k) * 0.5;
                         }
                     }
-                    [forms[0] * decay, forms[1] * decay]
-                },
-                [&mut *stored, &mut *dissipation],
-            );
+                }
+                [forms[0] * decay, forms[1] * decay]
+            });
+            match of_past {
+                None => self.modes.contract(simd, weights, [&mut *stored, &mut *dissipation]),
+                Some(OfPast { modes, .. }) => {
+                    for k in 0..past.blocks() {
+                        for (modes, block) in modes.iter_mut().zip(weights(k)) {
+                            let mut own = [0.0; LANES];
+                            block.store_array(&mut own);
+                            modes.extend(own);
+                        }
+                    }
+                    modes.iter_mut().for_each(|modes| modes.truncate(past.kernel().modes()));
+                }
+            }
             for q in 0..2 {
                 for p in 0..4 {
                     grown.by_u[q][p] = sum(by_u[q][p]);
@@ -157,9 +176,9 @@ impl MemoryTangent {
         &self,
         longer: &History,
         front: usize,
-        step: &RatePolynomial,
-        theta: f64,
+        (step, theta): (&RatePolynomial, f64),
         delta_u: &[f64],
+        of_past: &mut Option<OfPast>,
         out: [&mut [f64]; 2],
     ) {
         let (lag, scaled) = (theta * step.h, scaled(step, theta));
@@ -186,10 +205,28 @@ impl MemoryTangent {
             }
         }
         let [stored, dissipation] = out;
-        for (by_last, out) in by_last.iter().zip([&mut *stored, &mut *dissipation]) {
-            (0..4).for_each(|p| add(out, by_last[p], self.piece.row(p)));
+        match of_past {
+            Some(of_past) => of_past.piece = by_last,
+            None => {
+                for (by_last, out) in by_last.iter().zip([&mut *stored, &mut *dissipation]) {
+                    (0..4).for_each(|p| add(out, by_last[p], self.piece.row(p)));
+                }
+            }
         }
         self.add_grown(&grown, theta, delta_u, [stored, dissipation]);
+    }
+
+    /// What the past is told by columns for: no number where they have no room.
+    fn add_told(&self, past: &History, told: Option<OfPast>, (theta, h): (f64, f64), out: [&mut [f64]; 2]) {
+        let Some(ports) = self.ports.as_ref().filter(|_| !past.is_empty()) else { return };
+        let OfPast { modes: [first, second], piece: [of_first, of_second] } = told.unwrap_or_default();
+        let sums = [(STORED, first, of_first), (DISSIPATED, second, of_second)];
+        for (out, (which, modes, piece)) in out.into_iter().zip(sums) {
+            match ports.column_of_sum(key(which, theta * h, h), || Weights { modes, piece }) {
+                Some(column) => out[column] += 1.0,
+                None => out.fill(f64::NAN),
+            }
+        }
     }
 
     /// What is faster than the modes of a history, one for what is stored and one for the dissipation.
@@ -262,6 +299,12 @@ impl MemoryTangent {
             jump.add(rated, dissipation);
         }
     }
+}
+
+/// A closure as it is, whose attributes have a place only where it is told.
+#[inline(always)]
+fn inlined<I, O, F: FnMut(I) -> O>(closure: F) -> F {
+    closure
 }
 
 /// u_p θ^p.

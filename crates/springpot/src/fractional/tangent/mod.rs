@@ -59,11 +59,11 @@ mod state;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use adjoint::{MemoryAdjoint, PastOfStep};
+pub(crate) use adjoint::{MemoryAdjoint, OfStep, PastOfStep};
 pub use ask::Singular;
 pub use commit::TangentEnd;
 pub use energy::EnergyTangent;
-pub(crate) use ports::PortColumns;
+pub(crate) use ports::{PortColumns, Told};
 
 use super::history::History;
 use super::kernel::KernelError;

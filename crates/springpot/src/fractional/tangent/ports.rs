@@ -1,7 +1,7 @@
 //! The derivative of a memory whose own past is told by columns: what a step makes of each number of that past, for adjoints.
 //!
-//! In place of modes stand columns of ones: one for what the past adds at each lag that is asked for, one for δ of what the modes have seen, for δx(0)
-//! and for δD^α x. So the rows of a step are a small matrix, however many modes there are.
+//! In place of modes stand columns of ones: one for what the past adds at each lag that is asked for, one for each sum over modes that an energy asks
+//! for. So the rows of a step are a small matrix, however many modes there are.
 
 use super::columns::Columns;
 use super::{MemoryTangent, PastOfStep};
@@ -13,37 +13,78 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub(crate) struct PortColumns {
     /// The first of those of lags, and how many there are.
     pub(crate) lags: [usize; 2],
-    /// δ of what the modes have seen of the stroke.
-    pub(crate) travelled: usize,
-    /// δx(0).
-    pub(crate) origin: usize,
-    /// δD^α x after the last step.
-    pub(crate) now: usize,
+    /// The same of those of energies.
+    pub(crate) sums: [usize; 2],
 }
 
-/// The columns and the lags that were asked for.
+/// Σ_k g_k δz_k + Σ_p f_p δu_p of the modes and of the last piece.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Weights {
+    pub(super) modes: Vec<f64>,
+    pub(super) piece: [f64; 4],
+}
+
+/// What a column stands for: D^alpha x of the past at a lag, or a sum over its modes.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Told {
+    Lag(f64),
+    Sum(Weights),
+}
+
+impl Told {
+    /// How much it holds beside itself, bytes.
+    pub(crate) fn bytes(&self) -> usize {
+        match self {
+            Self::Lag(_) => 0,
+            Self::Sum(weights) => weights.bytes(),
+        }
+    }
+}
+
+/// Which sum it is, at a lag of a step of some size.
+type Key = (u8, [u64; 2]);
+
+/// Sums: of what is stored, of what is dissipated, of a mean.
+pub(super) const STORED: u8 = 0;
+pub(super) const DISSIPATED: u8 = 1;
+pub(super) const MEAN: u8 = 2;
+
+pub(super) fn key(which: u8, lag: f64, h: f64) -> Key {
+    (which, [lag.to_bits(), h.to_bits()])
+}
+
+#[derive(Debug, Clone, Default)]
+struct Asked {
+    lags: Vec<f64>,
+    sums: Vec<(Key, Weights)>,
+}
+
+/// The columns and what was asked for.
 #[derive(Debug)]
 pub(super) struct Ports {
     columns: PortColumns,
-    lags: Mutex<Vec<f64>>,
+    asked: Mutex<Asked>,
     kernel: Option<Arc<History>>,
     committed: Option<PastOfStep>,
+    /// By how much the end of the last step moves.
+    pub(super) moved: Vec<f64>,
 }
 
 impl Clone for Ports {
     fn clone(&self) -> Self {
         Self {
             columns: self.columns,
-            lags: Mutex::new(self.lags()),
+            asked: Mutex::new(self.asked.lock().unwrap_or_else(PoisonError::into_inner).clone()),
             kernel: self.kernel.clone(),
             committed: self.committed.clone(),
+            moved: self.moved.clone(),
         }
     }
 }
 
 impl Ports {
-    fn lags(&self) -> Vec<f64> {
-        self.lags.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    fn asked(&mut self) -> &mut Asked {
+        self.asked.get_mut().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Takes in that a step of size `h` is taken into `past`, behind which so many modes are put in front, or dropped.
@@ -56,9 +97,17 @@ impl Ports {
         self.kernel = Some(kernel);
     }
 
+    /// The end of the step that was committed moves by `delta_h`: modes behind it by these shares of that, and the coefficients of its piece.
+    pub(super) fn move_end(&mut self, modes: Vec<f64>, piece: [f64; 4], delta_h: &[f64]) {
+        if let Some(committed) = &mut self.committed {
+            committed.moved = Some(Weights { modes, piece });
+            self.moved.copy_from_slice(delta_h);
+        }
+    }
+
     /// The column of a lag; `None` where there is no room for another one.
     pub(super) fn column(&self, lag: f64) -> Option<usize> {
-        let mut lags = self.lags.lock().unwrap_or_else(PoisonError::into_inner);
+        let Asked { lags, .. } = &mut *self.asked.lock().unwrap_or_else(PoisonError::into_inner);
         let place = lags.iter().position(|known| *known == lag).unwrap_or_else(|| {
             lags.push(lag);
             lags.len() - 1
@@ -66,48 +115,80 @@ impl Ports {
         let [first, room] = self.columns.lags;
         (place < room).then_some(first + place)
     }
+
+    /// Whether nobody asks for energies.
+    pub(super) fn has_no_sums(&self) -> bool {
+        self.columns.sums[1] == 0
+    }
+
+    /// The column of a sum; `None` where there is no room for another one.
+    pub(super) fn column_of_sum(&self, key: Key, weights: impl FnOnce() -> Weights) -> Option<usize> {
+        let [first, room] = self.columns.sums;
+        let Asked { sums, .. } = &mut *self.asked.lock().unwrap_or_else(PoisonError::into_inner);
+        let place = sums.iter().position(|(known, _)| *known == key).or_else(|| {
+            (sums.len() < room).then(|| {
+                sums.push((key, weights()));
+                sums.len() - 1
+            })
+        });
+        place.map(|place| first + place)
+    }
 }
 
 impl MemoryTangent {
-    /// From now on its past is told by these columns; at t = 0, where its δx(0) was found.
+    /// From now on its past is told by these columns.
     pub(crate) fn tell_by(&mut self, columns: PortColumns) {
         self.modes = Columns::new(self.parameters, 0);
-        self.ports = Some(Ports { columns, lags: Mutex::default(), kernel: None, committed: None });
-        self.begin_ports();
+        let moved = vec![0.0; self.parameters];
+        self.ports = Some(Ports { columns, asked: Mutex::default(), kernel: None, committed: None, moved });
     }
 
-    /// The columns are ones again, and no lag was asked for.
-    pub(crate) fn begin_ports(&mut self) {
-        let Some(Ports { columns, lags, .. }) = &mut self.ports else { return };
-        lags.get_mut().unwrap_or_else(PoisonError::into_inner).clear();
-        let PortColumns { travelled, origin, now, .. } = *columns;
-        let blocks = [(&mut self.travelled, travelled), (&mut self.origin, origin), (&mut self.now, now)];
-        for (block, column) in blocks {
-            block.fill(0.0);
-            block[column] = 1.0;
+    /// Nothing was asked for.
+    pub(crate) fn forget_asked(&mut self) {
+        if let Some(ports) = &mut self.ports {
+            *ports.asked() = Asked::default();
         }
     }
 
-    /// The lags that were asked for, in the order of their columns.
-    pub(crate) fn lags(&self) -> Vec<f64> {
-        self.ports.as_ref().map_or_else(Vec::new, Ports::lags)
+    /// How many lags and sums were asked for.
+    pub(crate) fn count_asked(&mut self) -> [usize; 2] {
+        self.ports.as_mut().map_or([0; 2], |ports| {
+            let Asked { lags, sums } = ports.asked();
+            [lags.len(), sums.len()]
+        })
     }
 
-    /// Forgets all but the first lags that were asked for.
-    pub(crate) fn keep_lags(&mut self, count: usize) {
-        if let Some(Ports { lags, .. }) = &mut self.ports {
-            lags.get_mut().unwrap_or_else(PoisonError::into_inner).truncate(count);
-        }
+    /// Forgets what was asked for but the first lags and sums: gives the rest, each with its column.
+    pub(crate) fn split_asked(&mut self, [lags, sums]: [usize; 2]) -> Vec<(usize, Told)> {
+        let Some(ports) = &mut self.ports else { return Vec::new() };
+        let PortColumns { lags: [of_lags, room], sums: [of_sums, _] } = ports.columns;
+        let asked = ports.asked();
+        let lags_left = asked.lags.drain(lags.min(asked.lags.len())..).zip(of_lags + lags..of_lags + room);
+        let mut all: Vec<_> = lags_left.map(|(lag, column)| (column, Told::Lag(lag))).collect();
+        let sums_left = asked.sums.drain(sums.min(asked.sums.len())..).zip(of_sums + sums..);
+        all.extend(sums_left.map(|((_, weights), column)| (column, Told::Sum(weights))));
+        all
     }
 
-    /// δu_p of the last step, δ of what the modes have seen, δD^α x and δx(0).
-    pub(crate) fn known(&self) -> [&[f64]; 7] {
-        let [a, b, c, d] = [0, 1, 2, 3].map(|p| self.piece.row(p));
-        [a, b, c, d, &self.travelled, &self.now, &self.origin]
+    /// Blocks of what it keeps beside its modes: of what these have seen, of D^α x, of x(0).
+    pub(crate) fn kept_mut(&mut self) -> [&mut [f64]; 3] {
+        [&mut self.travelled, &mut self.now, &mut self.origin]
     }
 
-    /// What the step that was committed last did to the past.
-    pub(crate) fn take_past(&mut self) -> Option<PastOfStep> {
-        self.ports.as_mut()?.committed.take()
+    /// What jumped at t = 0 is what its x(0) is now.
+    pub(crate) fn take_origin(&mut self) {
+        let origin = &self.origin;
+        self.jumps.iter_mut().filter(|jump| jump.is_start).for_each(|jump| jump.size.copy_from_slice(origin));
+    }
+
+    /// δu_p of the last step, as it was taken into the past.
+    pub(crate) fn pieces(&self) -> [&[f64]; 4] {
+        [0, 1, 2, 3].map(|p| self.piece.row(p))
+    }
+
+    /// What the step that was committed last did to the past, and by how much its end moves.
+    pub(crate) fn take_past(&mut self) -> Option<(PastOfStep, &[f64])> {
+        let ports = self.ports.as_mut()?;
+        Some((ports.committed.take()?, &ports.moved))
     }
 }

@@ -186,27 +186,17 @@ impl Stepper for Radau {
     }
 
     fn vary(&mut self, _: Context, recorder: &mut Recorder, step: &Target) -> Result<(), RunError> {
-        let Recorder { equations, variation, recording, .. } = recorder;
-        if variation.is_none() && recording.is_none() {
-            return Ok(());
-        }
+        let Recorder { equations, variation, .. } = recorder;
+        let Some(variation) = variation else { return Ok(()) };
         let leaning = equations.lean(step.size, &self.step.errors.noise);
-        if let Some(recording) = recording {
-            self.step.record(equations, recording, step.size, step.end_inputs());
-        }
         // What shares in the choice of steps was worked out with the step.
-        let is_regular = variation.as_deref_mut().is_none_or(|variation| {
-            variation.shares_in_steps() || self.step.vary(equations, variation, step.size, step.end_inputs())
-        });
+        let is_regular =
+            variation.shares_in_steps() || self.step.vary(equations, variation, step.size, step.end_inputs());
         equations.stand(leaning);
         if is_regular {
             return Ok(());
         }
         Err(SensitivityError::Unknown { what: format!("a motion without inertia at t = {} s", step.from) }.into())
-    }
-
-    fn is_recorded(&self) -> bool {
-        true
     }
 
     fn starts_with(&self) -> Option<[&[f64]; 2]> {

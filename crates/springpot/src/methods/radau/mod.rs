@@ -5,7 +5,6 @@
 //! in time at every fractional order; rows between steps come from the cubic through the accelerations, integrated twice.
 //! Source of the method: Hairer & Wanner, Solving ODEs II, IV.5 and IV.8.
 
-mod adjoint;
 mod attempt;
 mod cross;
 mod dense;

@@ -12,9 +12,9 @@ use serde::{Deserialize, Serialize};
 pub(in crate::equations::control) struct TermVariation {
     /// Of its gain.
     gain: Vec<f64>,
-    tangent: MemoryTangent,
+    pub(in crate::equations::control) tangent: MemoryTangent,
     /// Of ∫e of an integral, where the step starts.
-    integral: Vec<f64>,
+    pub(in crate::equations::control) integral: Vec<f64>,
     /// Of the error and its rate at the start and at the nodes.
     errors: [Vec<f64>; 2],
     /// Of the stroke and its rate there.

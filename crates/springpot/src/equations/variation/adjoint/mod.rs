@@ -1,52 +1,21 @@
 //! Back through a run: gradients of numbers that are sums of its rows, by any number of parameters at once.
 //!
-//! What parameters change goes from step to step by linear maps. They are kept while the run goes on ([`Recording`]), and gone through in the other
-//! order, transposed ([`Tape::gradients`]): one pass for each number, however many parameters there are.
+//! What parameters change goes from step to step by linear maps. All that outlasts a step is cut off behind it: in place of what each parameter has
+//! changed so far stand columns of ones, one for each number of the state that changes at all, and the next step is differentiated by these as by
+//! parameters, by the very operations that go forward ([`super::Variation`]). What they make of the ones is the step's map. Of memories, columns stand
+//! for what their past tells ([`crate::fractional::PortColumns`]), however many modes they have. The maps are kept while the run goes on
+//! ([`Recording`]), and gone through in the other order, transposed ([`Backwards`]): one pass for each number, however many parameters there are.
 
 mod back;
-mod begin;
+mod blocks;
 mod record;
+mod room;
 mod tape;
 
-use super::Variation;
-use crate::law::variation::probe::LawProbe;
-use crate::observe::Quantity;
-use tape::{Begin, Entries, Layout, Row, Step};
-
-/// Most that a tape may hold, bytes.
-const MOST: usize = 1 << 30;
-
-/// A run that is being recorded.
-#[derive(Debug)]
-pub(crate) struct Recording {
-    /// Slopes at the nodes, with what parameters change where the motion stays.
-    pub(crate) variation: Variation,
-    /// What rows tell, by ones in place of parameters: those of the run first, then q, v and a, then three numbers of each element.
-    rows: Variation,
-    laws: Vec<LawProbe>,
-    quantities: Vec<Quantity>,
-    /// The step at hand.
-    step: Option<Box<Step>>,
-    tape: Tape,
-}
-
-/// A run to be gone back through, step by step.
-#[derive(Debug)]
-pub struct Tape {
-    /// Number of parameters.
-    count: usize,
-    /// Number of velocities of the extended robot.
-    nv: usize,
-    /// Number of quantities of a row.
-    quantities: usize,
-    begin: Begin,
-    layouts: Vec<Layout>,
-    entries: Entries,
-    /// What parameters change of the rest of elements: element, parameter, by how much.
-    rests: Vec<(usize, usize, f64)>,
-    /// What they change of the start: velocity, parameter, by how much of q and of v.
-    starts: Vec<(usize, usize, [f64; 2])>,
-}
+pub(crate) use back::Backwards;
+pub(crate) use record::Recording;
+pub(super) use room::keeps_works;
+pub(crate) use tape::{Entries, Starts};
 
 /// How much a quantity at a row counts in a number.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,17 +26,4 @@ pub struct Share {
     pub quantity: usize,
     /// ∂(number)/∂(its value there).
     pub slope: f64,
-}
-
-impl Tape {
-    /// How much it holds, bytes.
-    pub fn bytes(&self) -> usize {
-        self.entries.bytes()
-    }
-}
-
-impl Row {
-    fn of(number: usize, theta: f64) -> Self {
-        Self { number, theta, quantities: Default::default(), elements: Vec::new() }
-    }
 }

@@ -1,203 +1,164 @@
 //! What is kept of a run so that one can go back through it: of each step the linear map of what parameters change.
 
-use crate::collocation::STAGES;
-use crate::fractional::{PastOfStep, PortColumns};
+use crate::fractional::{PastOfStep, Told};
 
-/// Entries of a matrix that are not 0.
+/// Rows of a matrix of which most are 0.
 #[derive(Debug, Default)]
-pub(super) struct Sparse(Vec<(u32, u32, f64)>);
+pub(super) struct Map {
+    /// Which row each is, and where its entries end.
+    rows: Vec<(u32, u32)>,
+    columns: Vec<u32>,
+    values: Vec<f64>,
+}
 
-impl Sparse {
+impl Map {
     /// Takes in row `row`.
-    pub(super) fn push_row(&mut self, row: usize, values: &[f64]) {
-        let entries = values.iter().enumerate().filter(|(_, value)| **value != 0.0);
-        self.0.extend(entries.map(|(column, value)| (row as u32, column as u32, *value)));
-    }
-
-    pub(super) fn push(&mut self, row: usize, column: usize, value: f64) {
-        self.0.push((row as u32, column as u32, value));
-    }
-
-    /// to += factor·(transposed) by, in blocks of `count`.
-    pub(super) fn add_transposed(&self, factor: f64, by: &[f64], to: &mut [f64], count: usize) {
-        for (row, column, value) in &self.0 {
-            let (from, into) = (*row as usize * count, *column as usize * count);
-            let scaled = factor * value;
-            to[into..into + count].iter_mut().zip(&by[from..from + count]).for_each(|(to, by)| *to += scaled * by);
+    pub(super) fn push(&mut self, row: usize, values: &[f64]) {
+        let before = self.values.len();
+        for (column, value) in values.iter().enumerate().filter(|(_, value)| **value != 0.0) {
+            self.columns.push(column as u32);
+            self.values.push(*value);
+        }
+        if self.values.len() > before {
+            self.rows.push((row as u32, self.values.len() as u32));
         }
     }
 
+    /// to += transposed·by, in blocks of `count`: what counts for nothing adds nothing, whatever the map has there.
+    pub(super) fn add_transposed(&self, by: &[f64], to: &mut [f64], count: usize) {
+        let mut from = 0;
+        for (row, end) in &self.rows {
+            let own = &by[*row as usize * count..][..count];
+            let (entries, end) = (from..*end as usize, *end as usize);
+            from = end;
+            if own.iter().all(|by| *by == 0.0) {
+                continue;
+            }
+            for (column, value) in self.columns[entries.clone()].iter().zip(&self.values[entries]) {
+                let sums = &mut to[*column as usize * count..][..count];
+                sums.iter_mut().zip(own).filter(|(_, by)| **by != 0.0).for_each(|(sum, by)| *sum += value * by);
+            }
+        }
+    }
+
+    /// Of whatever rests on a row, however little, columns are unknown where the map is.
+    pub(super) fn add_unknown(&self, rests: &[bool], to: &mut [f64], count: usize) {
+        if self.values.iter().all(|value| !value.is_nan()) {
+            return;
+        }
+        let mut from = 0;
+        for (row, end) in &self.rows {
+            let (own, entries) = (&rests[*row as usize * count..][..count], from..*end as usize);
+            from = *end as usize;
+            let unknown = self.columns[entries.clone()].iter().zip(&self.values[entries]);
+            for (column, _) in unknown.filter(|(_, value)| value.is_nan()) {
+                let sums = to[*column as usize * count..][..count].iter_mut().zip(own);
+                sums.filter(|(_, rests)| **rests).for_each(|(sum, _)| *sum = f64::NAN);
+            }
+        }
+    }
+
+    /// Notes which columns it has entries in.
+    pub(super) fn mark(&self, used: &mut [bool]) {
+        self.columns.iter().for_each(|column| used[*column as usize] = true);
+    }
+
+    /// Gives back what it has no use for.
+    pub(super) fn close(&mut self) {
+        self.rows.shrink_to_fit();
+        self.columns.shrink_to_fit();
+        self.values.shrink_to_fit();
+    }
+
     fn bytes(&self) -> usize {
-        self.0.capacity() * size_of::<(u32, u32, f64)>()
+        size_of_val(&self.rows[..]) + size_of_val(&self.columns[..]) + size_of_val(&self.values[..])
     }
 }
 
-/// A run as it is gone back through.
+/// How many numbers the state has where columns of ones were put in place of what changes, and which number has which column.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Starts {
+    pub(super) numbers: usize,
+    pub(super) columns: Vec<(u32, u32)>,
+}
+
+/// A row: quantities by all columns, and what their columns of the past of memories stand for, where those are no step's.
+#[derive(Debug)]
+pub(super) struct Row {
+    pub(super) number: usize,
+    pub(super) quantities: Map,
+    /// Memory, column and what it stands for.
+    pub(super) told: Vec<(u32, u32, Told)>,
+}
+
+/// From one cut to the next.
 #[derive(Debug, Default)]
-pub(super) struct Entries {
-    all: Vec<Entry>,
+pub(super) struct Entry {
+    pub(super) starts: Starts,
+    /// The state behind it by all columns.
+    pub(super) state: Map,
+    pub(super) memories: Vec<MemoryOfEntry>,
+    pub(super) rows: Vec<Row>,
+    /// Columns whose derivatives ended in it.
+    pub(super) lost: Vec<u32>,
+}
+
+/// What a memory does from one cut to the next.
+#[derive(Debug, Default)]
+pub(super) struct MemoryOfEntry {
+    /// The step that was taken into its past.
+    pub(super) past: Option<PastOfStep>,
+    /// The coefficients of its piece, and by how much its end moves, by all columns.
+    pub(super) kept: Map,
+    /// Columns, and what they stand for.
+    pub(super) told: Vec<(u32, Told)>,
+}
+
+/// Rows of [`MemoryOfEntry::kept`].
+pub(super) const PIECES: usize = 4;
+
+/// A stretch of a run as it is gone back through.
+#[derive(Debug, Default)]
+pub(crate) struct Entries {
+    pub(super) all: Vec<Entry>,
     bytes: usize,
 }
 
-#[derive(Debug)]
-pub(super) enum Entry {
-    /// The accelerations where a step starts were worked out anew.
-    Start(Start),
-    /// A row between two steps.
-    Row(Row),
-    Step(Box<Step>),
-}
-
 impl Entries {
-    pub(super) fn push(&mut self, entry: Entry) {
+    pub(super) fn push(&mut self, mut entry: Entry) {
+        entry.close();
         self.bytes += entry.bytes();
         self.all.push(entry);
     }
 
-    pub(super) fn bytes(&self) -> usize {
+    /// How much they hold, bytes.
+    pub(crate) fn bytes(&self) -> usize {
         self.bytes
-    }
-
-    pub(super) fn into_all(self) -> impl Iterator<Item = Entry> {
-        self.all.into_iter()
-    }
-
-    /// From the last one on.
-    pub(super) fn backwards(&self) -> impl Iterator<Item = &Entry> {
-        self.all.iter().rev()
-    }
-}
-
-/// Slopes of the equations of motion: of the velocities that are free by all.
-#[derive(Debug, Default)]
-pub(super) struct Slopes {
-    pub(super) by_q: Vec<f64>,
-    pub(super) by_v: Vec<f64>,
-    /// By parameters.
-    pub(super) explicit: Sparse,
-    /// ∂y/∂q and ∂y'/∂q of every element.
-    pub(super) gradients: Vec<[Vec<f64>; 2]>,
-}
-
-/// M δa = −(…) where a step starts.
-#[derive(Debug)]
-pub(super) struct Start {
-    pub(super) free: Vec<usize>,
-    /// M, transposed.
-    pub(super) mass: Vec<f64>,
-    pub(super) slopes: Slopes,
-    /// Forces of the elements by the columns of their laws.
-    pub(super) forces: Vec<Sparse>,
-}
-
-/// A row, in the step that it is told with or between two.
-#[derive(Debug)]
-pub(super) struct Row {
-    pub(super) number: usize,
-    pub(super) theta: f64,
-    /// Quantities by q, v and a of the robot, by force, stored energy and D^alpha x of each element, and by parameters.
-    pub(super) quantities: Sparse,
-    /// What the elements make of it; none where no quantity is theirs.
-    pub(super) elements: Vec<RowOfElement>,
-}
-
-#[derive(Debug)]
-pub(super) struct RowOfElement {
-    pub(super) gradients: [Vec<f64>; 2],
-    /// Force, stored energy and D^alpha x by the columns of the law.
-    pub(super) map: Sparse,
-    /// Lags of each memory.
-    pub(super) lags: Vec<Vec<f64>>,
-}
-
-/// A step that was taken into the past.
-#[derive(Debug)]
-pub(super) struct Step {
-    pub(super) h: f64,
-    pub(super) free: Vec<usize>,
-    /// Of all stages, transposed.
-    pub(super) matrix: Vec<f64>,
-    pub(super) stages: [Slopes; STAGES],
-    pub(super) elements: Vec<StepOfElement>,
-    pub(super) rows: Vec<Row>,
-}
-
-#[derive(Debug, Default)]
-pub(super) struct StepOfElement {
-    /// ∂F_i/∂x_m and ∂F_i/∂x'_m.
-    pub(super) response: [[[f64; STAGES]; STAGES]; 2],
-    /// Forces at the nodes by the columns of the law.
-    pub(super) forces: Sparse,
-    /// What is kept behind the step by the same columns: [`KEPT`] rows of each memory, then the inner variables.
-    pub(super) kept: Sparse,
-    pub(super) lags: Vec<Vec<f64>>,
-    pub(super) pasts: Vec<Option<PastOfStep>>,
-}
-
-/// Rows that a memory keeps: four coefficients of its piece, what its modes have seen, D^alpha x.
-pub(super) const KEPT: usize = 6;
-
-/// What begins at t = 0.
-#[derive(Debug, Default)]
-pub(super) struct Begin {
-    /// Of every element.
-    pub(super) gradients: Vec<[Vec<f64>; 2]>,
-    /// δx(0) of each memory, then inner variables, by the columns of the law.
-    pub(super) kept: Vec<Sparse>,
-}
-
-/// Which column of a law is what.
-#[derive(Debug)]
-pub(super) struct Layout {
-    pub(super) columns: usize,
-    pub(super) ports: Vec<PortColumns>,
-    /// Columns of the inner variables.
-    pub(super) variables: Vec<usize>,
-    /// Column and parameter.
-    pub(super) parameters: Vec<(usize, usize)>,
-}
-
-fn of_numbers<'n>(all: impl IntoIterator<Item = &'n Vec<f64>>) -> usize {
-    all.into_iter().map(|numbers| size_of_val(&numbers[..])).sum()
-}
-
-impl Slopes {
-    fn bytes(&self) -> usize {
-        of_numbers([&self.by_q, &self.by_v]) + self.explicit.bytes() + of_numbers(self.gradients.iter().flatten())
-    }
-}
-
-impl Row {
-    fn bytes(&self) -> usize {
-        let own = |own: &RowOfElement| of_numbers(own.gradients.iter().chain(&own.lags)) + own.map.bytes();
-        size_of::<Self>()
-            + self.quantities.bytes()
-            + self.elements.iter().map(|element| size_of::<RowOfElement>() + own(element)).sum::<usize>()
     }
 }
 
 impl Entry {
+    fn close(&mut self) {
+        self.state.close();
+        self.memories.iter_mut().for_each(|memory| memory.kept.close());
+        self.rows.iter_mut().for_each(|row| row.quantities.close());
+    }
+
     fn bytes(&self) -> usize {
+        let told = |told: &Told| size_of::<(u32, u32, Told)>() + told.bytes();
+        let memory = |own: &MemoryOfEntry| {
+            size_of::<MemoryOfEntry>()
+                + own.kept.bytes()
+                + own.past.as_ref().map_or(0, PastOfStep::bytes)
+                + own.told.iter().map(|(_, own)| told(own)).sum::<usize>()
+        };
+        let row = |row: &Row| {
+            size_of::<Row>() + row.quantities.bytes() + row.told.iter().map(|(_, _, own)| told(own)).sum::<usize>()
+        };
         size_of::<Self>()
-            + match self {
-                Self::Start(Start { mass, slopes, forces, .. }) => {
-                    of_numbers([mass]) + slopes.bytes() + forces.iter().map(Sparse::bytes).sum::<usize>()
-                }
-                Self::Row(row) => row.bytes(),
-                Self::Step(step) => {
-                    let element = |own: &StepOfElement| {
-                        size_of::<StepOfElement>()
-                            + own.forces.bytes()
-                            + own.kept.bytes()
-                            + of_numbers(&own.lags)
-                            + size_of_val(&own.pasts[..])
-                    };
-                    size_of::<Step>()
-                        + of_numbers([&step.matrix])
-                        + step.stages.iter().map(Slopes::bytes).sum::<usize>()
-                        + step.elements.iter().map(element).sum::<usize>()
-                        + step.rows.iter().map(Row::bytes).sum::<usize>()
-                }
-            }
+            + size_of_val(&self.starts.columns[..])
+            + self.state.bytes()
+            + self.memories.iter().map(memory).sum::<usize>()
+            + self.rows.iter().map(row).sum::<usize>()
     }
 }
