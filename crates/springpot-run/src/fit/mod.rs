@@ -8,11 +8,13 @@ mod compared;
 mod figures;
 mod files;
 mod moduli;
+mod momentum;
 mod outcome;
 mod predicted;
 mod problem;
 mod record;
 mod search;
+mod smooth;
 mod stroke;
 mod walk;
 

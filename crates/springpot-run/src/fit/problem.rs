@@ -9,6 +9,9 @@ const NOISE: f64 = 1e-9;
 /// The same of a part of the samples.
 const ROUGH_NOISE: f64 = 1e-6;
 
+/// A cost for each row that noise of the standard deviations that are told leaves.
+const EXPLAINED: f64 = 1.3;
+
 /// Residuals of the records that are fitted.
 pub(super) struct Problem<'a> {
     pub(super) parameters: Vec<Parameter>,
@@ -66,6 +69,13 @@ impl<'a> Problem<'a> {
     /// Whether a record takes a run.
     pub(super) fn has_runs(&self) -> bool {
         self.records.iter().any(|record| record.data.is_fitted && record.data.kind == DataKind::Run)
+    }
+
+    /// Whether a cost is what the noise of the rows leaves, as far as all of it is known beforehand.
+    pub(super) fn is_explained(&self, cost: f64) -> bool {
+        let fitted = self.records.iter().filter(|record| record.data.is_fitted);
+        let rows: usize = fitted.map(|record| record.rows.len() * record.data.columns.len()).sum();
+        self.series.iter().all(|series| series.has_sd) && cost <= EXPLAINED * rows as f64
     }
 
     /// The residual of a row of a column, and what it changes by with the model and with ln of it.

@@ -1,5 +1,6 @@
 //! The search: starts over threads, runs over a growing horizon, laws one after the other, intervals.
 
+use super::momentum;
 use super::outcome::{Outcome, Status, score};
 use super::problem::Problem;
 use springpot::identification::{
@@ -113,37 +114,66 @@ fn spread<T: Send>(count: usize, jobs: usize, stop: &AtomicBool, work: impl Fn(u
     done.into_iter().map(|(_, own)| own).collect()
 }
 
-/// Where the k-th start leads; of runs over growing parts of them, the own start over the whole as well.
+/// Where the k-th start leads. Of runs first from what the equations of motion say of it, where records tell how robots move; the first start as it is
+/// too, and over growing parts of the records where that leads lower.
 fn led(problem: &Problem<'_>, settings: &Settings, k: usize, stop: &AtomicBool) -> Result<Reached, Refused> {
     if !problem.has_runs() {
         return reach(problem, settings, k, stop);
     }
-    let direct = (k == 0).then(|| reach(problem, settings, k, stop)).transpose()?;
-    if let Some(direct) = direct.as_ref().filter(|_| settings.starts == 1) {
-        return Ok(direct.clone());
+    let Ok(mut inside) = Problem::new(problem.records[0].fitting) else { return reach(problem, settings, k, stop) };
+    momentum::narrow(&mut inside);
+    let start = reach(&inside, &Settings { steps: 0, ..*settings }, k, stop)?.values(&inside.parameters);
+    let guessed = match momentum::guess(&inside, &start, stop) {
+        Some(values) => Some(from(&mut inside, problem, (&values, settings.steps), stop)?),
+        None => None,
+    };
+    let guessed = guessed.filter(|reached| reached.cost().is_finite());
+    let is_enough = |own: &&Reached| k == 1 && own.is_converged() || problem.is_explained(own.cost());
+    if let Some(guessed) = guessed.as_ref().filter(is_enough) {
+        return Ok(guessed.clone());
     }
-    let Ok(mut part) = Problem::new(problem.records[0].fitting) else { return reach(problem, settings, k, stop) };
-    let mut last: Option<Reached> = None;
+    let direct = (k == 0).then(|| from(&mut inside, problem, (&start, settings.steps), stop)).transpose()?;
+    let is_least = |(own, direct): (&Reached, &Reached)| own.cost() <= direct.cost() * (1.0 + NEARLY);
+    let is_sure = settings.starts == 1 || guessed.as_ref().zip(direct.as_ref()).is_some_and(is_least);
+    let grown = if is_sure { None } else { grown(&mut inside, problem, (&start, settings.steps), stop)? };
+    let found = [direct, guessed, grown].into_iter().flatten().min_by(|a, b| a.cost().total_cmp(&b.cost()));
+    found.map_or_else(|| reach(problem, &Settings { steps: 0, ..*settings }, k, stop), Ok)
+}
+
+/// Where these values lead in so many steps, over the part of the records of `part`, within the bounds of `problem`.
+fn from(
+    part: &mut Problem<'_>,
+    problem: &Problem<'_>,
+    (values, steps): (&[f64], usize),
+    stop: &AtomicBool,
+) -> Result<Reached, Refused> {
+    part.parameters.clone_from(&problem.parameters);
+    part.parameters.iter_mut().zip(values).for_each(|(parameter, value)| parameter.start = vec![*value]);
+    reach(part, &Settings { starts: 1, steps, ..Settings::default() }, 0, stop)
+}
+
+/// Where these values lead over growing parts of the records.
+fn grown(
+    part: &mut Problem<'_>,
+    problem: &Problem<'_>,
+    (start, most): (&[f64], usize),
+    stop: &AtomicBool,
+) -> Result<Option<Reached>, Refused> {
+    let mut values = start.to_vec();
     for horizon in HORIZONS {
         part.horizon = horizon;
-        let steps = if horizon < 1.0 { STEPS_OF_A_PART } else { settings.steps };
-        let reached = match &last {
-            None => reach(&part, &Settings { steps, ..*settings }, k, stop)?,
-            Some(last) => {
-                let values = last.values(&part.parameters);
-                part.parameters.iter_mut().zip(values).for_each(|(parameter, value)| parameter.start = vec![value]);
-                reach(&part, &Settings { steps, starts: 1, ..*settings }, 0, stop)?
-            }
-        };
-        let is_lost = !reached.cost().is_finite();
-        last = Some(reached);
-        if is_lost || stop.load(Ordering::Relaxed) {
+        let steps = if horizon < 1.0 { STEPS_OF_A_PART } else { most };
+        let reached = from(part, problem, (&values, steps), stop)?;
+        if horizon >= 1.0 {
+            return Ok(Some(reached));
+        }
+        if !reached.cost().is_finite() || stop.load(Ordering::Relaxed) {
             break;
         }
+        values = reached.values(&part.parameters);
     }
-    let whole = last.filter(|_| part.horizon >= 1.0);
-    let found = [direct, whole].into_iter().flatten().min_by(|a, b| a.cost().total_cmp(&b.cost()));
-    found.map_or_else(|| reach(problem, &Settings { steps: 0, ..*settings }, k, stop), Ok)
+    part.horizon = 1.0;
+    Ok(None)
 }
 
 /// Where all starts lead. Of runs, which are dear, no more are tried once two have come to the least cost; of strokes, once three have.

@@ -1,4 +1,5 @@
 //! Fits to records whose truth is known.
 
+mod arm;
 mod moduli;
 mod support;

@@ -1,6 +1,8 @@
 //! Records with noise of a seed, and what is fitted to them.
 
+use springpot::Simulation;
 use springpot::law::Catalog;
+use springpot::observe::Quantity;
 use springpot_run::fit::{Outcome, fit};
 use springpot_scenario::Scenario;
 use std::fmt::Write as _;
@@ -50,6 +52,22 @@ impl Place {
     }
 }
 
+/// Quantities of a run of a scenario, whose files lie at a place, at these times.
+pub(crate) fn rows_of(place: &Place, text: &str, quantities: &[Quantity], times: &[f64]) -> Vec<Vec<f64>> {
+    let scenario = Scenario::parse(text, "truth.toml", place.path()).unwrap_or_else(|refusals| panic!("{refusals}"));
+    let cases = scenario.cases(&Catalog::standard()).unwrap_or_else(|refusals| panic!("{refusals}"));
+    let plan = cases.plan(0).unwrap_or_else(|refusals| panic!("{refusals}"));
+    let mut run = Simulation::new(plan.system(), plan.settings).unwrap();
+    let row = |t: &f64| {
+        while run.t() < *t {
+            run.step().unwrap();
+        }
+        let at = run.interpolate(*t).unwrap();
+        quantities.iter().map(|quantity| at.value(*quantity)).collect()
+    };
+    times.iter().map(row).collect()
+}
+
 /// A parameter that was found.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Found {
@@ -62,6 +80,12 @@ pub(crate) fn found(outcome: &Outcome, name: &str) -> Found {
     let parameters = &outcome.fitting.plan().parameters;
     let j = parameters.iter().position(|own| own.sought.name == name).unwrap_or_else(|| panic!("{name}"));
     Found { value: outcome.fit.values[j], sd: outcome.fit.sd(j), interval: outcome.intervals[j] }
+}
+
+/// All parameters that were found, by name.
+pub(crate) fn all_found(outcome: &Outcome) -> Vec<(String, Found)> {
+    let names = outcome.fitting.plan().parameters.iter().map(|own| own.sought.name.clone());
+    names.map(|name| (name.clone(), found(outcome, &name))).collect()
 }
 
 /// An element, all of whose numbers are sought.

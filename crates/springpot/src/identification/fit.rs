@@ -81,6 +81,11 @@ impl Reached {
         self.0.cost
     }
 
+    /// Whether it is a minimum.
+    pub fn is_converged(&self) -> bool {
+        self.0.end == End::Converged
+    }
+
     /// The values there.
     pub fn values(&self, parameters: &[Parameter]) -> Vec<f64> {
         parameters.iter().zip(&self.0.places).map(|(parameter, place)| place.value(parameter)).collect()
