@@ -2,4 +2,5 @@
 
 mod arm;
 mod moduli;
+mod strokes;
 mod support;

@@ -157,3 +157,58 @@ fn sweeps_over_amplitudes_find_all_of_filled_rubber() {
     eprintln!("all seven in {all} of 100, each in {each:?}");
     assert!(all >= 70 && each.iter().all(|held| *held >= 90), "{all} and {each:?} of 100");
 }
+
+/// Springs side by side, as leaves and inside a law, are told only by their sum.
+#[test]
+fn springs_side_by_side_are_known_by_their_sum() {
+    let place = Place::new();
+    place.write("dma.csv", &table(|s| 50.0 + 60.0 * s.powf(0.3), (40, 3.0), 0.01, 77));
+    let network = "network = \"parallel(spring(k_a), spring(k_b), springpot(c, alpha))\"";
+    let law = "law = \"thermoviscoelastic\"\ninputs = { T = \"25 degC\" }";
+    let cases = [
+        (pad(network, &[("k_a", 10.0), ("k_b", 30.0), ("c", 40.0), ("alpha", 0.4)]), ["k_a", "k_b"]),
+        (
+            pad(law, &[("E_c", 10.0), ("E_kv", 30.0), ("E_d", 40.0), ("alpha", 0.4)])
+                .replace("alpha = 0.4 }", "alpha = 0.4, a_kv = 1e-3 }"),
+            ["E_c", "E_kv"],
+        ),
+    ];
+    for (text, [first, second]) in cases {
+        let outcome = place.fit(&format!("{text}{DMA}"));
+        let [open] = &outcome.fit.undetermined[..] else { panic!("{:?}", outcome.fit.undetermined) };
+        let determined = open.determined.unwrap();
+        let names = determined.sum.map(|(at, _)| outcome.fitting.plan().parameters[at].sought.name.clone());
+        assert_eq!(names, [first, second]);
+        assert!((determined.sum[1].1 - 1.0).abs() < 1e-6, "{determined:?}");
+        assert!((determined.value - 50.0).abs() < 3.0 * determined.sd && determined.sd < 2.0, "{determined:?}");
+        let said = open.text(|at| outcome.fitting.plan().parameters[at].sought.name.clone());
+        assert!(said.starts_with(&format!("only {first} + {second} = ")) && said.ends_with("is determined"), "{said}");
+        // What they stand beside is known all the same.
+        let alpha = found(&outcome, "alpha");
+        assert!((alpha.value - 0.3).abs() < 3.0 * alpha.sd, "{alpha:?}");
+    }
+}
+
+/// A stiffness that is not there: 0 to the bit with a limit above it wherever the rows have it below 0, which they do in every second set.
+#[test]
+fn a_stiffness_that_belongs_at_0_is_0() {
+    let place = Place::new();
+    let law = pad("law = \"fractional-kelvin-voigt\"", &[("k", 10.0), ("c", 40.0), ("alpha", 0.4)]);
+    let text = format!("{law}{DMA}[fit]\nstarts = 3\n");
+    let (mut at_zero, sets) = (0, 12);
+    for seed in 0..sets {
+        place.write("dma.csv", &table(|s| 60.0 * s.powf(0.3), (40, 3.0), 0.02, 300 + seed));
+        let outcome = place.fit(&text);
+        let k = found(&outcome, "k");
+        if outcome.fit.at_bound[0].is_none() {
+            assert!(k.value < 3.5 * k.sd, "{k:?}");
+            continue;
+        }
+        at_zero += 1;
+        let [low, high] = k.interval;
+        assert_eq!((k.value, k.sd, low, outcome.fit.parameters), (0.0, 0.0, 0.0, 2));
+        println!("0, at most {high:.2}");
+        assert!(high > 0.1 && high < 5.0, "{k:?}");
+    }
+    assert!((3..=9).contains(&at_zero), "{at_zero} of {sets}");
+}

@@ -110,6 +110,10 @@ impl Leaf for Source {
         Term { coefficient: 0.0, order: 0.0 }
     }
 
+    fn linearised_slope(&self, _: &Point<Dual>) -> Option<Term> {
+        Some(Term { coefficient: 0.0, order: 0.0 })
+    }
+
     fn at_rest(&self, at: &Point, _: f64) -> AtRest {
         let tangent = Tangent::Leaf(self.linearised(at), Some((self.input, -self.gain.value)));
         AtRest { force: self.force(at), stiffness: None, tangent }
