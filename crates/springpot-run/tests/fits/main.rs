@@ -2,5 +2,6 @@
 
 mod arm;
 mod moduli;
+mod others;
 mod strokes;
 mod support;
