@@ -26,15 +26,17 @@ const WINDOWS: usize = 6;
 const APART: usize = 4;
 /// Fewest rows of a window.
 const LEAST: usize = 7;
+/// Rows from one knot of the motion to the next.
+const KNOTS: usize = 2;
 /// The first row is so early, in distances of rows, that the motion goes on to t = 0.
 const EARLY: f64 = 3.0;
 /// Of forces along the measured motion, and changes of the cost that do not matter to a guess, as a share.
 const RTOL: f64 = 1e-5;
-const NOISE: f64 = 1e-4;
+const NOISE: f64 = 1e-3;
 /// Halvings of a range towards where a scenario can be read.
 const HALVINGS: usize = 8;
 /// Fits, each with the scatter of the one before as the size of its residuals.
-const PASSES: usize = 3;
+const PASSES: usize = 2;
 const STEPS: usize = 60;
 
 /// Values that the equations of motion ask for, beginning at those of `start`; `None` where no record tells how all free joints move.
@@ -202,6 +204,9 @@ impl<'a> Track<'a> {
             return None;
         }
         let quantities = fitting.quantities(record.index);
+        // Between these a smooth motion is a cubic.
+        let last = data.at.len() - 1;
+        let kept: Vec<usize> = (0..last).step_by(KNOTS).chain([last]).collect();
         let mut joints = Vec::new();
         for (j, drive) in system.model.own_joints().zip(&forward.drives) {
             if !matches!(drive, Drive::Force(_)) {
@@ -212,7 +217,9 @@ impl<'a> Track<'a> {
                 return None;
             }
             let column = quantities.iter().position(|quantity| *quantity == Quantity::Coordinate(q.start))?;
-            let signal = Signal::spline(&data.at, &smoothed(&data.at, &data.columns[column].measured)).ok()?;
+            let smooth = smoothed(&data.at, &data.columns[column].measured);
+            let thin = |values: &[f64]| -> Vec<f64> { kept.iter().map(|row| values[*row]).collect() };
+            let signal = Signal::spline(&thin(&data.at), &thin(&smooth)).ok()?;
             joints.push((system.model.joint_names()[j].clone(), v.start, signal));
         }
         let is_compared = |quantity: &Quantity| matches!(quantity, Quantity::Element(..) | Quantity::Torque(_));
