@@ -97,10 +97,10 @@ pub mod names;
 pub mod observe;
 pub mod optimisation;
 mod random;
-pub mod sensitivity;
 pub mod signal;
 pub mod spatial;
 pub mod system;
 pub mod table;
 
 pub use driver::Simulation;
+pub use system::sensitivity;

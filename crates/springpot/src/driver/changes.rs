@@ -5,9 +5,9 @@ use crate::account::recorder::Recorder;
 use crate::equations::context::Context;
 use crate::equations::{Node, Variation};
 use crate::observe::{ElementQuantity, Quantity, Snapshot};
-use crate::sensitivity::{Lost, Switched};
 use crate::signal::{Jet, Signal};
 use crate::system::error::RunError;
+use crate::system::sensitivity::{Lost, Switched};
 use crate::system::{Event, Motion, System};
 
 /// Rates along a step are differences of five values this far apart, in units of the way to its far end, exact for its polynomials but for rounding.

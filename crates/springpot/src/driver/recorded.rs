@@ -6,9 +6,9 @@ use super::time_loop::Driver;
 use crate::account::recorder::Recorder;
 use crate::equations::{Backwards, Entries, Starts};
 use crate::observe::Snapshot;
-use crate::sensitivity::Share;
 use crate::system::System;
 use crate::system::error::RunError;
+use crate::system::sensitivity::Share;
 use crate::system::settings::{Settings, Stop};
 
 /// Most that a [`Tape`] keeps of the maps of a run, bytes. Beyond it stretches of the run are run again when they are gone back through.

@@ -2,7 +2,7 @@
 
 use super::state::Checkpoint;
 use crate::observe::Table;
-use crate::sensitivity::Lost;
+use crate::system::sensitivity::Lost;
 
 /// Takes the rows of a run.
 pub trait Rows {

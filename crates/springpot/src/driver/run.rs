@@ -48,7 +48,7 @@ pub fn run(system: &System, settings: &Settings, rows: &mut dyn Rows, stop: &Sto
     (report, outcome.map(drop))
 }
 
-/// As [`run`], keeping what it takes to go back through it, where [`crate::sensitivity::Sensitivity::adjoint`] asks for that: no checkpoint is offered.
+/// As [`run`], keeping what it takes to go back through it, where [`crate::system::sensitivity::Sensitivity::adjoint`] asks for that: no checkpoint is offered.
 pub fn record(
     system: &System,
     settings: &Settings,

@@ -37,7 +37,6 @@ pub(crate) use scale::Scale;
 pub(crate) use solve::Solve;
 pub(crate) use state::EquationsState;
 pub use steady::SteadyError;
-pub use variation::Share;
 pub(crate) use variation::{
     Backwards, Entries, Found, ROW, Recording, STAGE, Starts, StepErrors, TANGENTS, Told, Variation, VariationState,
 };

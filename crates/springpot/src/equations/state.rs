@@ -2,7 +2,7 @@
 
 use super::assembly::Equations;
 use super::context::Context;
-use super::control::{ControlState, End, Eye, Sampler, Shown};
+use super::control::{ControlState, End, Eye, OfSamples, Sampler, Shown};
 use super::friction::Sliding;
 use super::variation::Variation;
 use crate::elements::Kept;
@@ -59,7 +59,7 @@ impl Equations {
         variation: Option<&mut Variation>,
     ) -> Result<(), RunError> {
         if let Some(control) = &mut self.control {
-            sampler.take(eye, shown, control, variation)?;
+            sampler.take(eye, shown, control, variation.map(|variation| variation as &mut dyn OfSamples))?;
             control.set_sides(sampler.sides());
         }
         Ok(())

@@ -28,9 +28,8 @@ use crate::law::variation::{LawVariation, ObservationVariation, PointVariation, 
 use crate::law::{Network, Response, Start};
 use crate::model::{FrictionLaw, Model};
 use crate::observe::Quantity;
-use crate::sensitivity::{Seed, Sensitivity, SensitivityError};
+use crate::system::sensitivity::{Seed, Sensitivity, SensitivityError};
 use crate::system::{Motion, System};
-pub use adjoint::Share;
 pub(crate) use adjoint::{Backwards, Entries, Recording, Starts};
 use energies::Works;
 pub(crate) use found::Found;

@@ -35,7 +35,7 @@ pub enum Quantity<Id = usize> {
     GripperError,
     /// A term of the energy balance, J.
     Energy(EnergyQuantity),
-    /// The derivative of one of these by a parameter ([`crate::sensitivity::Sensitivity::columns`]).
+    /// The derivative of one of these by a parameter ([`crate::system::sensitivity::Sensitivity::columns`]).
     Derivative(Id),
 }
 

@@ -14,7 +14,7 @@ pub struct Snapshot {
     pub(crate) joints: f64,
     /// Residual of the energy balance, J; NaN where unknown.
     pub(crate) residual: f64,
-    /// Of [`crate::sensitivity::Sensitivity::columns`]; empty where nobody asked for them.
+    /// Of [`crate::system::sensitivity::Sensitivity::columns`]; empty where nobody asked for them.
     pub(crate) derivatives: Vec<f64>,
 }
 

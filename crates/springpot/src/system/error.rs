@@ -1,9 +1,9 @@
 //! What can stop a run.
 
+use super::sensitivity::SensitivityError;
 use crate::fractional::KernelError;
 use crate::fractional::scheme::SchemeError;
 use crate::motion::PathError;
-use crate::sensitivity::SensitivityError;
 
 /// Why a run stopped or a simulation refused; what happens on the way names the time.
 #[derive(Debug, thiserror::Error)]

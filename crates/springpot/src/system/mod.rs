@@ -7,6 +7,7 @@ pub(crate) mod event;
 pub(crate) mod fixed_step;
 pub(crate) mod jump;
 pub(crate) mod row_times;
+pub mod sensitivity;
 pub(crate) mod settings;
 mod signals;
 
@@ -16,13 +17,14 @@ pub use fixed_step::FixedStep;
 pub use row_times::RowTimes;
 pub use settings::{Settings, Stop};
 
+use sensitivity::Sensitivity;
+
 use crate::actuation::Forward;
 use crate::control::Control;
 use crate::elements::Element;
 use crate::model::{Model, Site};
 use crate::motion::Trajectory;
 use crate::observe::{ElementQuantity, Observables, Quantity, Table};
-use crate::sensitivity::Sensitivity;
 use crate::table::Column;
 use std::sync::Arc;
 

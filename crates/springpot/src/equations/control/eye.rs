@@ -113,3 +113,18 @@ impl Eye<'_> {
         slopes
     }
 }
+
+/// What follows from forces, just before a sample.
+pub(crate) trait Shown {
+    /// Force of an element, N or N·m.
+    fn force(&self, e: usize) -> f64;
+
+    /// D^alpha x of an element.
+    fn derivative(&self, e: usize) -> f64;
+
+    /// An acceleration, rad/s² or m/s².
+    fn acceleration(&self, k: usize) -> f64;
+
+    /// Adds Σ F·∂y/∂q of all elements (nv).
+    fn add_pull(&self, tau: &mut [f64]);
+}

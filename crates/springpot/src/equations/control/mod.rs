@@ -12,13 +12,15 @@ mod step;
 mod term;
 mod variation;
 
-pub(crate) use eye::{Eye, InputSlopes};
+pub(crate) use eye::{Eye, InputSlopes, Shown};
 pub(crate) use guards::ControlSeen;
 pub(crate) use mode::Guard;
 pub(crate) use row::Misread;
-pub(crate) use sampler::{Sampler, SamplerState, Shown};
+pub(crate) use sampler::{Sampler, SamplerState};
 pub(crate) use step::End;
-pub(crate) use variation::{ControlVariation, ControlVariationState, Held as HeldVariation, Jump, Place, Sides};
+pub(crate) use variation::{
+    ControlVariation, ControlVariationState, Held as HeldVariation, Jump, OfSamples, Place, Sides,
+};
 
 use crate::collocation::STAGES;
 use crate::control::{Aim, AntiWindup, At, Control, Controlled, Feedback, Limit, Scratch, TorqueSlopes};

@@ -1,11 +1,10 @@
 //! Sampled laws: when they are due, what they say, and when it acts.
 
-use super::eye::Eye;
-use super::variation::{Held as HeldVariation, Sides};
+use super::eye::{Eye, Shown};
+use super::variation::{Held as HeldVariation, OfSamples, Sides};
 use super::{ControlRun, Target};
 use crate::control::{Aim, At, Control, Feedback, Sampling, Scratch, Sense};
 use crate::equations::context::Held;
-use crate::equations::variation::Variation;
 use crate::observe::Snapshot;
 use crate::system::System;
 use crate::system::error::RunError;
@@ -19,21 +18,6 @@ const ONE_TIME: f64 = 1e-12;
 
 /// Share of it by which a period may miss a whole number of steps.
 const WHOLE: f64 = 1e-9;
-
-/// What follows from forces, just before a sample.
-pub(crate) trait Shown {
-    /// Force of an element, N or N·m.
-    fn force(&self, e: usize) -> f64;
-
-    /// D^alpha x of an element.
-    fn derivative(&self, e: usize) -> f64;
-
-    /// An acceleration, rad/s² or m/s².
-    fn acceleration(&self, k: usize) -> f64;
-
-    /// Adds Σ F·∂y/∂q of all elements (nv).
-    fn add_pull(&self, tau: &mut [f64]);
-}
 
 /// The sampled laws of a run.
 #[derive(Debug, Clone)]
@@ -195,7 +179,7 @@ impl Sampler {
         eye: &Eye,
         shown: &dyn Shown,
         run: &ControlRun,
-        mut variation: Option<&mut Variation>,
+        mut variation: Option<&mut dyn OfSamples>,
     ) -> Result<(), RunError> {
         let t = eye.t;
         self.changes.clear();
@@ -297,7 +281,7 @@ impl Sampler {
     }
 
     /// Works out what parameters change of the samples that are due.
-    fn take_changes(&mut self, variation: &mut Variation, shown: &dyn Shown, run: &ControlRun) {
+    fn take_changes(&mut self, variation: &mut dyn OfSamples, shown: &dyn Shown, run: &ControlRun) {
         let (count, nv) = (variation.count(), self.state.said.len());
         let Self { laws, state, due, control, limited, .. } = self;
         let changes = state.changes.get_or_insert_with(|| Changes {

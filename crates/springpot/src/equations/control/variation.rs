@@ -7,7 +7,7 @@ mod sampled;
 mod see;
 
 pub(crate) use leave::Jump;
-pub(crate) use sampled::{Held, Sides};
+pub(crate) use sampled::{Held, OfSamples, Sides};
 
 use super::eye::{Read, Slopes};
 use super::mode::Mode;
@@ -18,8 +18,8 @@ use crate::control::{Aim, ControllerVariation, Feedback, FeedbackSlope, Scratch,
 use crate::dynamics::Kinematics;
 use crate::fractional::{KernelError, MemoryTangent};
 use crate::model::Model;
-use crate::sensitivity::{Seed, Sensitivity, SensitivityError};
 use crate::system::System;
+use crate::system::sensitivity::{Seed, Sensitivity, SensitivityError};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 

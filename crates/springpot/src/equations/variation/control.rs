@@ -2,7 +2,7 @@
 
 use super::{NodeVariation, ROW, Variation};
 use crate::equations::assembly::Equations;
-use crate::equations::control::{ControlRun, HeldVariation, Jump, Place, Shown, Sides, Target};
+use crate::equations::control::{ControlRun, HeldVariation, Jump, OfSamples, Place, Shown, Sides, Target};
 use crate::observe::Snapshot;
 
 impl Variation {
@@ -60,43 +60,6 @@ impl Variation {
         }
     }
 
-    /// From now on what sampled laws said changes so.
-    pub(crate) fn hold(&mut self, held: Option<&HeldVariation>) {
-        if let (Some(control), Some(held)) = (&mut self.control, held) {
-            control.hold(held);
-        }
-    }
-
-    /// What changes of what the sampled expression for `target` says of the row that was read.
-    pub(crate) fn say(&self, target: Target, shown: &dyn Shown) -> Vec<f64> {
-        let (node, Some(control)) = (&self.nodes[ROW], &self.control) else { return Vec::new() };
-        let rests = |e: usize| &self.elements[e].rest[..];
-        let motion = [&self.coordinates.values[..], &node.v_now, &node.a_now];
-        let at = Place { t: node.t, motion, kinematics: &node.kinematics, readings: &node.readings, rests: &rests };
-        let forces = |e: usize| (shown.force(e), self.elements[e].row[0].clone());
-        control.say(target, at, &forces, [&node.q, &node.v, &node.a])
-    }
-
-    /// The same of a sampled controller, ahead of its last limit and behind it.
-    pub(crate) fn say_of_controller(
-        &mut self,
-        run: &ControlRun,
-        told: (&[Sides], &[f64], f64),
-        shown: &dyn Shown,
-    ) -> [Vec<f64>; 2] {
-        let Self { nodes, elements, control, system, .. } = self;
-        let (n, node, Some(control)) = (system.model.nv(), &nodes[ROW], control) else { return Default::default() };
-        let pull = |row: usize, p: usize| {
-            let of = |(e, ([gradient, _], hessian)): (usize, (&[Vec<f64>; 2], &Vec<f64>))| {
-                let blocks = node.q.chunks_exact(node.q.len() / n);
-                let turned: f64 = hessian[row * n..][..n].iter().zip(blocks).map(|(second, q)| second * q[p]).sum();
-                gradient[row] * elements[e].row[0][p] + shown.force(e) * turned
-            };
-            node.gradients.iter().zip(&node.hessians).enumerate().map(of).sum::<f64>()
-        };
-        control.say_of_controller(run, told, &pull, [&node.q, &node.v], node.t)
-    }
-
     /// What the terms of a controller do at the start (0) or at a row, at θ of the step at hand or between two.
     pub(super) fn push_at(&mut self, i: usize, theta: Option<f64>, equations: &Equations) {
         if let (Some(control), Some(run)) = (&mut self.control, &equations.control) {
@@ -150,5 +113,45 @@ impl Variation {
                 self.note_inputs(equations, e, t);
             }
         }
+    }
+}
+
+impl OfSamples for Variation {
+    fn count(&self) -> usize {
+        self.by.parameters.len()
+    }
+
+    fn hold(&mut self, held: Option<&HeldVariation>) {
+        if let (Some(control), Some(held)) = (&mut self.control, held) {
+            control.hold(held);
+        }
+    }
+
+    fn say(&self, target: Target, shown: &dyn Shown) -> Vec<f64> {
+        let (node, Some(control)) = (&self.nodes[ROW], &self.control) else { return Vec::new() };
+        let rests = |e: usize| &self.elements[e].rest[..];
+        let motion = [&self.coordinates.values[..], &node.v_now, &node.a_now];
+        let at = Place { t: node.t, motion, kinematics: &node.kinematics, readings: &node.readings, rests: &rests };
+        let forces = |e: usize| (shown.force(e), self.elements[e].row[0].clone());
+        control.say(target, at, &forces, [&node.q, &node.v, &node.a])
+    }
+
+    fn say_of_controller(
+        &mut self,
+        run: &ControlRun,
+        told: (&[Sides], &[f64], f64),
+        shown: &dyn Shown,
+    ) -> [Vec<f64>; 2] {
+        let Self { nodes, elements, control, system, .. } = self;
+        let (n, node, Some(control)) = (system.model.nv(), &nodes[ROW], control) else { return Default::default() };
+        let pull = |row: usize, p: usize| {
+            let of = |(e, ([gradient, _], hessian)): (usize, (&[Vec<f64>; 2], &Vec<f64>))| {
+                let blocks = node.q.chunks_exact(node.q.len() / n);
+                let turned: f64 = hessian[row * n..][..n].iter().zip(blocks).map(|(second, q)| second * q[p]).sum();
+                gradient[row] * elements[e].row[0][p] + shown.force(e) * turned
+            };
+            node.gradients.iter().zip(&node.hessians).enumerate().map(of).sum::<f64>()
+        };
+        control.say_of_controller(run, told, &pull, [&node.q, &node.v], node.t)
     }
 }

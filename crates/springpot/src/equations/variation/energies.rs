@@ -9,8 +9,8 @@ use crate::equations::resistance::{direction, each_loss_slope};
 use crate::law::variation::{ObservationVariation, PowersVariation};
 use crate::law::{Power, Powers};
 use crate::observe::Quantity;
-use crate::sensitivity::{Seed, Sensitivity};
 use crate::signal::Signal;
+use crate::system::sensitivity::{Seed, Sensitivity};
 use crate::system::{Action, Event, Motion, Setting};
 use serde::{Deserialize, Serialize};
 

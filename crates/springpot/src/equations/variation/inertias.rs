@@ -1,7 +1,7 @@
 //! What parameters change of inertias and of the field of gravity, seeds of all of them side by side.
 
-use crate::sensitivity::{Seed, Sensitivity};
 use crate::spatial::Inertia;
+use crate::system::sensitivity::{Seed, Sensitivity};
 
 /// What parameters change of inertias and gravity: parameter, velocity of the extended robot, by how much.
 #[derive(Debug, Default)]

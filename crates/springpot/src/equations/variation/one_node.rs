@@ -7,7 +7,7 @@ use crate::equations::evaluate::Evaluation;
 use crate::equations::node::Node;
 use crate::equations::resistance::sign;
 use crate::law::Response;
-use crate::sensitivity::{Seed, Sensitivity, SensitivityError};
+use crate::system::sensitivity::{Seed, Sensitivity, SensitivityError};
 use crate::system::{Action, System};
 
 /// The stage of a step, among the nodes; that at its end is [`STAGES`].

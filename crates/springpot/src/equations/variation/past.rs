@@ -6,8 +6,8 @@ use crate::equations::node::Node;
 use crate::equations::pose::State;
 use crate::law::past::PastVariation;
 use crate::law::{Past, Periodic};
-use crate::sensitivity::{Seed, SensitivityError};
 use crate::system::System;
+use crate::system::sensitivity::{Seed, SensitivityError};
 
 impl Variation {
     /// What changes of the past of element `e`; of a steady one along the motion of `run`.

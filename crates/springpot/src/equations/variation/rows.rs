@@ -8,7 +8,7 @@ use crate::law::Point;
 use crate::law::variation::{ObservationVariation, PointVariation};
 use crate::model::Model;
 use crate::observe::{ElementQuantity, EnergyQuantity, Quantity, Snapshot};
-use crate::sensitivity::Seed;
+use crate::system::sensitivity::Seed;
 
 impl ElementVariation {
     /// What it is told of node `i`, of the step at hand where it is within one.

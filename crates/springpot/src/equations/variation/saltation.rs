@@ -10,7 +10,7 @@ use crate::equations::assembly::Equations;
 use crate::equations::evaluate::Evaluation;
 use crate::equations::node::Node;
 use crate::law::{InputValue, Network, Point};
-use crate::sensitivity::{Lost, Seed, SensitivityError, Switched};
+use crate::system::sensitivity::{Lost, Seed, SensitivityError, Switched};
 use crate::system::{Action, Event, Motion, Setting};
 use serde::{Deserialize, Serialize};
 

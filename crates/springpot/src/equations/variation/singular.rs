@@ -14,7 +14,7 @@ use crate::elements::Forces;
 use crate::equations::assembly::{Equations, singular_parts};
 use crate::law::{Point, Term};
 use crate::observe::Snapshot;
-use crate::sensitivity::Seed;
+use crate::system::sensitivity::Seed;
 use serde::{Deserialize, Serialize};
 
 /// What singular forces have of the changes over a step.

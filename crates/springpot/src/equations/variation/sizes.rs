@@ -4,7 +4,7 @@ use super::{Variation, of_step};
 use crate::collocation::STAGES;
 use crate::equations::assembly::Equations;
 use crate::law::variation::VariationError;
-use crate::sensitivity::Sensitivity;
+use crate::system::sensitivity::Sensitivity;
 use serde::{Deserialize, Serialize};
 
 /// What changes may err in a step, in units of what the motion may: so they come to the accuracy that the motion comes to in its own steps.

@@ -15,9 +15,9 @@ use crate::equations::evaluate::Evaluation;
 use crate::equations::{Change, Equations, Look, ROW, Solved, Within};
 use crate::law::Course;
 use crate::methods::stepper::{Behind, Stepper, Target, Trial};
-use crate::sensitivity::SensitivityError;
 use crate::signal::Agenda;
 use crate::system::error::RunError;
+use crate::system::sensitivity::SensitivityError;
 use crate::system::settings::Settings;
 use serde::{Deserialize, Serialize};
 

@@ -6,8 +6,8 @@ use super::super::term::Integrand;
 use super::super::{ControlRun, Target};
 use super::see::add_sense;
 use super::{ControlVariation, Place};
-use crate::sensitivity::SensitivityError;
 use crate::signal::Jet;
+use crate::system::sensitivity::SensitivityError;
 
 /// A force that jumps at a time that parameters move.
 #[derive(Debug)]

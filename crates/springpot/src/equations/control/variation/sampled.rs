@@ -1,11 +1,12 @@
 //! What parameters change of samples.
 
-use super::super::eye::Eye;
+use super::super::eye::{Eye, Shown};
 use super::super::mode::Mode;
 use super::super::{ControlRun, Target};
 use super::see::add_sense;
 use super::{ControlVariation, Place, ROW};
 use crate::control::Sense;
+
 use crate::signal::Jet;
 use serde::{Deserialize, Serialize};
 
@@ -23,6 +24,26 @@ pub(crate) struct Held {
 pub(crate) struct Sides {
     pub(in crate::equations::control) rate: i8,
     pub(in crate::equations::control) force: i8,
+}
+
+/// Who tells what parameters change of samples.
+pub(crate) trait OfSamples {
+    /// Number of parameters.
+    fn count(&self) -> usize;
+
+    /// From now on what sampled laws said changes so.
+    fn hold(&mut self, held: Option<&Held>);
+
+    /// What changes of what the sampled expression for `target` says of the row that was read.
+    fn say(&self, target: Target, shown: &dyn Shown) -> Vec<f64>;
+
+    /// The same of a sampled controller, ahead of its last limit and behind it.
+    fn say_of_controller(
+        &mut self,
+        run: &ControlRun,
+        told: (&[Sides], &[f64], f64),
+        shown: &dyn Shown,
+    ) -> [Vec<f64>; 2];
 }
 
 impl ControlVariation {

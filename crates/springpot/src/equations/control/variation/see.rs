@@ -6,7 +6,7 @@ use super::super::{ControlRun, Target};
 use super::{ControlVariation, Place};
 use crate::control::{Aim, At, RobotChange, Sense};
 use crate::dynamics::{RneaDerivatives, point_jacobian, point_jacobian_rate};
-use crate::sensitivity::Seed;
+use crate::system::sensitivity::Seed;
 
 impl ControlVariation {
     /// Looks at node `i`: what follows from the state there, and how. `slopes` are those of the equations of motion, from which it is taken, as from

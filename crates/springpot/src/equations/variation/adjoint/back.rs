@@ -3,9 +3,9 @@
 //! With s̄ = ∂m/∂s of the state s behind a cut, and y = R c, s = S c of the columns c in front of it: c̄ = Sᵀ s̄ + Σ Rᵀ ∂m/∂y. Those of parameters add
 //! up; those of ones are ∂m/∂s of the state at the cut before.
 
-use super::Share;
 use super::tape::{Entries, Entry, PIECES, Row};
 use crate::fractional::{MemoryAdjoint, OfStep};
+use crate::system::sensitivity::Share;
 
 /// How much a quantity of a row counts: row, quantity, number, slope.
 type Seed = (usize, usize, usize, f64);

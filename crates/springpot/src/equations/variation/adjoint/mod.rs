@@ -16,14 +16,3 @@ pub(crate) use back::Backwards;
 pub(crate) use record::Recording;
 pub(super) use room::keeps_works;
 pub(crate) use tape::{Entries, Starts};
-
-/// How much a quantity at a row counts in a number.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Share {
-    /// Which row, from 0.
-    pub row: usize,
-    /// Which of [`crate::sensitivity::Sensitivity::adjoint`].
-    pub quantity: usize,
-    /// ∂(number)/∂(its value there).
-    pub slope: f64,
-}

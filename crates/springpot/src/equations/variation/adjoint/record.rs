@@ -3,11 +3,11 @@
 use super::room::Columns;
 use super::tape::{Entries, Entry, Map, MemoryOfEntry, PIECES, Row, Starts};
 use crate::equations::assembly::Equations;
-use crate::equations::control::Sampler;
+use crate::equations::control::{OfSamples, Sampler};
 use crate::equations::variation::Variation;
 use crate::observe::{Quantity, Snapshot};
-use crate::sensitivity::{Sensitivity, SensitivityError};
 use crate::system::System;
+use crate::system::sensitivity::{Sensitivity, SensitivityError};
 use std::sync::Arc;
 
 /// A run that is being recorded, beside the variation of it by [`Self::columns`].

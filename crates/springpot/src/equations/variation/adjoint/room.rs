@@ -4,7 +4,7 @@ use crate::equations::assembly::Equations;
 use crate::fractional::PortColumns;
 use crate::law::Network;
 use crate::observe::{ElementQuantity, EnergyQuantity, Quantity};
-use crate::sensitivity::{Parameter, Sensitivity};
+use crate::system::sensitivity::{Parameter, Sensitivity};
 use crate::system::{Action, Motion, System};
 use std::sync::Arc;
 

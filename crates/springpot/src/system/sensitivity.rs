@@ -1,13 +1,11 @@
 //! What a run is differentiated by: numbers of its system, and what each of them moves.
 
-pub use crate::equations::Share;
-
+use super::System;
 use crate::control::{Controller, ControllerNumber, ErrorTerm, FeedbackSlope, TermChange};
 use crate::law::Network;
 use crate::model::Model;
 use crate::observe::Quantity;
 use crate::signal::Signal;
-use crate::system::System;
 use crate::table::Column;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -48,6 +46,17 @@ impl Sensitivity {
             }
         }
     }
+}
+
+/// How much a quantity at a row counts in a number.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Share {
+    /// Which row, from 0.
+    pub row: usize,
+    /// Which of [`Sensitivity::adjoint`].
+    pub quantity: usize,
+    /// ∂(number)/∂(its value there).
+    pub slope: f64,
 }
 
 /// A derivative that rows tell.
