@@ -176,3 +176,19 @@ fn inertias_dampings_and_the_strut_of_a_driven_arm() {
     let off = furthest(&all_found(&fit(&far)), &all_found(&near));
     assert!(off < 0.02, "{off} standard deviations");
 }
+
+/// Where no record tells how one of the joints moves, growing parts of it lead there.
+#[test]
+fn the_strut_from_two_of_three_angles() {
+    let truth = numbers(&[("k", 50.0), ("c", 50.0), ("alpha", 0.5)]);
+    let place = measured(&truth, 43);
+    let data = record(MILLIRADIAN, "").replace(", \"q.q3\" = { column = \"q3\", sd = \"1 mrad\" }", "");
+    assert!(!data.contains("q3"));
+    let fit = |of: &[(&'static str, f64)], starts: usize| {
+        place.fit(&format!("{}{}{data}[fit]\nstarts = {starts}\n", arm(&numbers(of)), sought(&LAW)))
+    };
+    let near = all_found(&fit(&[("k", 50.0), ("c", 50.0), ("alpha", 0.5)], 1));
+    let far = [("k", 10.0), ("c", 10.0), ("alpha", 0.8)];
+    let off = furthest(&all_found(&fit(&far, 2)), &near);
+    assert!(off < 0.02, "{off} standard deviations");
+}
