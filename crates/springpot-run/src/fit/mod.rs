@@ -3,6 +3,7 @@
 //! [`Fitting`] has the records and what is sought; [`fit()`] finds it, [`look()`] says beforehand what the records can
 //! determine. [`Problem`] has residuals and their derivatives for other minimisers.
 
+mod admissible;
 mod ahead;
 mod compared;
 mod figures;
@@ -16,6 +17,7 @@ mod record;
 mod search;
 mod smooth;
 mod stroke;
+mod track;
 mod walk;
 
 pub use ahead::{Ahead, look};

@@ -1,5 +1,6 @@
 //! The search: starts over threads, runs over a growing horizon, laws one after the other, intervals.
 
+use super::admissible;
 use super::momentum;
 use super::outcome::{Outcome, Status, score};
 use super::problem::Problem;
@@ -121,7 +122,7 @@ fn led(problem: &Problem<'_>, settings: &Settings, k: usize, stop: &AtomicBool) 
         return reach(problem, settings, k, stop);
     }
     let Ok(mut inside) = Problem::new(problem.records[0].fitting) else { return reach(problem, settings, k, stop) };
-    momentum::narrow(&mut inside);
+    admissible::narrow(&mut inside);
     let start = reach(&inside, &Settings { steps: 0, ..*settings }, k, stop)?.values(&inside.parameters);
     let guessed = match momentum::guess(&inside, &start, stop) {
         Some(values) => Some(from(&mut inside, problem, (&values, settings.steps), stop)?),
