@@ -7,7 +7,7 @@ use springpot_scenario::DataKind;
 /// Halvings of a range towards where a scenario can be read.
 const HALVINGS: usize = 8;
 
-/// Narrows bounds to where scenarios can be read, one parameter at a time from where it begins: inertias that no body has are no trials of a linear problem.
+/// Narrows bounds, and starts with them, to where scenarios can be read, one parameter at a time from where it begins: inertias that no body has are no trials of a linear problem.
 pub(super) fn narrow(problem: &mut Problem<'_>) {
     let start: Vec<f64> = problem.parameters.iter().map(|own| own.start[0]).collect();
     let none = vec![false; start.len()];
@@ -40,6 +40,7 @@ pub(super) fn narrow(problem: &mut Problem<'_>) {
     for (own, [low, high]) in problem.parameters.iter_mut().zip(bounds) {
         if low < high {
             own.bounds = [low, high];
+            own.start.iter_mut().for_each(|start| *start = start.clamp(low, high));
         }
     }
 }
