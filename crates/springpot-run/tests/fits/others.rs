@@ -15,7 +15,7 @@ fn the_ramp_of_rheos() {
     let place = Place::new();
     place.write("ramp.csv", &testdata("rheos/data_time.csv"));
     let data = "[[data]]\nkind = \"stroke\"\nelement = \"pad\"\ncsv = \"ramp.csv\"\n\
-                columns = { stroke = \"strain\", force = \"stress\" }\n[fit]\nstarts = 2\n";
+                columns = { stroke = \"strain\", force = \"stress\" }\n[fit]\nstarts = 1\n";
     let maxwell = pad("network = \"series(spring(k), dashpot(c))\"", &[("k", 1.0), ("c", 1.0)]);
     let outcome = place.fit(&format!("{maxwell}{data}"));
     assert!((outcome.fit.cost / 0.022_256_005_279_453_45 - 1.0).abs() < 1e-9, "{}", outcome.fit.cost);
