@@ -3,6 +3,7 @@
 mod back;
 mod changes;
 mod control;
+mod every;
 mod free;
 mod kinks;
 mod laws;

@@ -7,6 +7,9 @@ use crate::law::variation::VariationError;
 use crate::system::sensitivity::Sensitivity;
 use serde::{Deserialize, Serialize};
 
+/// How far ahead what begins to change is measured, as a share of the run: in shorter steps rounding would be all that is seen of it.
+const AHEAD: f64 = 1e-6;
+
 /// What changes may err in a step, in units of what the motion may: so they come to the accuracy that the motion comes to in its own steps.
 pub(crate) const TANGENTS: f64 = 4.0;
 
@@ -113,8 +116,9 @@ impl Variation {
     }
 
     /// The estimate of the step's error of what changes of the inner variables of laws, the worst one in units of its tolerance, `rtol` of its size.
-    pub(crate) fn hidden_error(&self, equations: &Equations, rtol: f64) -> f64 {
+    pub(crate) fn hidden_error(&self, equations: &Equations, (rtol, end): (f64, f64)) -> f64 {
         let (mut worst, count) = (0.0f64, self.count());
+        let ahead = (AHEAD * end / equations.bank.size()).max(1.0);
         for ((e, element), sizes) in self.elements.iter().enumerate().zip(&self.sizes.so_far.hidden) {
             if element.law.variables().is_empty() {
                 continue;
@@ -126,7 +130,7 @@ impl Variation {
                     return;
                 }
                 let so_far = sizes.get(variable * count + p).copied().unwrap_or(0.0);
-                let share = error / (rtol * so_far.max(change).max(coming).max(self.sizes.expected[p] * size));
+                let share = error / (rtol * so_far.max(change).max(ahead * coming).max(self.sizes.expected[p] * size));
                 worst = if share.is_nan() { f64::INFINITY } else { worst.max(share) };
             });
         }

@@ -197,7 +197,7 @@ impl Prescribed {
             return 0.0;
         };
         see(variation, evaluations, equations, step);
-        variation.hidden_error(equations, TANGENTS * settings.rtol)
+        variation.hidden_error(equations, (TANGENTS * settings.rtol, settings.end))
     }
 
     /// The step is tried again at this size, or somewhat below its own.

@@ -106,7 +106,7 @@ impl Radau {
         let is_regular = self.step.vary(equations, variation, target.size, target.end_inputs());
         equations.stand(leaning);
         if is_regular {
-            let hidden = variation.hidden_error(equations, TANGENTS * recorder.settings.rtol);
+            let hidden = variation.hidden_error(equations, (TANGENTS * recorder.settings.rtol, recorder.settings.end));
             self.step.estimate_variation(equations, variation, target.size).max(hidden)
         } else {
             f64::INFINITY
