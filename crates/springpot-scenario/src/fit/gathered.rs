@@ -354,7 +354,7 @@ fn of_run(ctx: &Context<'_>, document: &Node, written: &Record<'_>, mut asked: A
         .collect();
     let mut quantities = Vec::new();
     for (column, wanted) in data.columns.iter().zip(&written.wanted) {
-        match named.get(&column.name).copied().filter(|quantity| has_derivative(*quantity)) {
+        match named.get(&column.name).copied().filter(|quantity| has_derivative(*quantity, |_| None)) {
             Some(quantity) => quantities.push(quantity),
             None => {
                 let message = format!("{:?} cannot be fitted: no derivative is known of it", column.name);

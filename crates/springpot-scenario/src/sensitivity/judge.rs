@@ -89,6 +89,11 @@ struct OfMetrics {
     no_gradient: Vec<String>,
 }
 
+/// Whether derivatives of what a plan describes are known.
+fn is_known(plan: &Plan, of: Quantity) -> bool {
+    has_derivative(of, |e| plan.elements.get(e).map(|element| &element.element))
+}
+
 /// What metrics are of, which `place` wants to be gone back through.
 fn of_metrics(root: &Table<'_>, plan: &Plan, place: &Place) -> Read<OfMetrics> {
     if plan.metrics.is_empty() {
@@ -99,7 +104,7 @@ fn of_metrics(root: &Table<'_>, plan: &Plan, place: &Place) -> Read<OfMetrics> {
     let [acting, described] = by_name(plan);
     let mut of = OfMetrics::default();
     for metric in plan.metrics.iter().map(|plan| &plan.metric) {
-        if !described.get(&metric.of).copied().is_some_and(has_derivative) {
+        if !described.get(&metric.of).copied().is_some_and(|of| is_known(plan, of)) {
             of.no_gradient.push(metric.name.clone());
             of.places.push(None);
             continue;
@@ -326,7 +331,7 @@ fn columns(root: &Table<'_>, plan: &Plan, asked: &Asked, parameters: &[Parameter
         }
         let quantity = acting.get(&column.name);
         // Of an element that is not enabled as where it is: all cases have the same columns.
-        if !described.get(&column.name).copied().is_some_and(has_derivative) {
+        if !described.get(&column.name).copied().is_some_and(|of| is_known(plan, of)) {
             if let Some(glob) = asked.of.iter().flatten().find(|glob| glob.text == column.name) {
                 let message = format!("{:?} cannot be differentiated: no derivative is known of it", column.name);
                 return refuse(&glob.place, RefusalKind::Rule, message, "leave it out of `of`".to_owned());
@@ -344,7 +349,7 @@ fn columns(root: &Table<'_>, plan: &Plan, asked: &Asked, parameters: &[Parameter
             continue;
         }
         match names.get(&*metric.of) {
-            Some(column) if described.get(&metric.of).copied().is_some_and(has_derivative) => {
+            Some(column) if described.get(&metric.of).copied().is_some_and(|of| is_known(plan, of)) => {
                 by_parameters(column, acting.get(&metric.of), parameters, &mut for_metrics, &mut known);
             }
             _ => no_gradient.push(metric.name.clone()),

@@ -67,6 +67,28 @@ fn what_lets_go_in_series() {
     compare_within(1e-6, &pulls, &columns, &[("element.strut.k_t", 1.0), ("element.strut.a", 1e-5)]);
 }
 
+/// What each leaf of a law is.
+#[test]
+fn leaves() {
+    let columns = |leaves: &[&str]| -> Vec<String> {
+        let of = |leaf: &&str| ["stroke", "rate", "force", "derivative"].map(|key| format!("strut.{leaf}.{key}"));
+        leaves.iter().flat_map(of).collect()
+    };
+    let told = |element: &str| format!("{}\n[output]\nleaves = true\n", slider(element));
+    let two = told(
+        "network = \"parallel(series(springpot(c_1, a_1), springpot(c_2, a_2)), spring(k), dashpot(d))\"\n\
+         parameters = { c_1 = 50, a_1 = 0.2, c_2 = 30, a_2 = 0.7, k = 20, d = 2 }",
+    );
+    let paths = [("element.strut.c_1", 0.2), ("element.strut.a_2", 1e-3), ("motion.start.q.q1", 1e-3)];
+    let names = columns(&["springpot1", "springpot2", "spring1", "dashpot1"]);
+    compare(&two, &names.iter().map(String::as_str).collect::<Vec<_>>(), &paths);
+    let slips =
+        told("network = \"parallel(jenkins(k_j, F_y), spring(k))\"\nparameters = { k_j = 300, F_y = 3, k = 20 }");
+    let names = columns(&["jenkins1", "spring1"]);
+    let paths = [("element.strut.k_j", 0.5), ("element.strut.F_y", 5e-3)];
+    compare_within(1e-5, &slips, &names.iter().map(String::as_str).collect::<Vec<_>>(), &paths);
+}
+
 #[test]
 fn starts_that_are_singular() {
     // From x(0) = 0.07 m, and from 0, where only changes of it are singular.

@@ -6,7 +6,7 @@ use crate::fractional::KernelError;
 use crate::fractional::scheme::Scheme;
 use crate::law::past::{self, Begun, PastVariation};
 use crate::law::variation::LawVariation;
-use crate::law::{Derivative, Entry, InputValue, Network, Past, RuleError, Start, State};
+use crate::law::{Derivative, Entry, InputValue, Network, Past, Point, RuleError, Start, State};
 use crate::signal::Signal;
 use std::sync::Arc;
 
@@ -178,6 +178,18 @@ impl Element {
     pub(crate) fn jolt_variation(&self, of: Begun, horizon: f64) -> Option<(f64, Vec<f64>)> {
         let jumps = self.past.is_of_derivative() && self.derivative == Derivative::RiemannLiouville;
         past::jolted(of, horizon).filter(|_| jumps)
+    }
+
+    /// Whether it is known what parameters change of its leaves: not by another clock, behind a jump at t = 0, nor where parts in series are not linear or
+    /// share what they begin with by coefficients of one order.
+    pub(crate) fn tells_changes_of_leaves(&self) -> bool {
+        let inputs = vec![InputValue::default(); self.entry.inputs.len()];
+        let (at, mut orders) = (Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &inputs }, Vec::new());
+        self.law.for_each_springpot(&at, &mut |term| orders.push(term.order));
+        orders.sort_by(f64::total_cmp);
+        let jumps = self.past.is_of_derivative() && self.derivative == Derivative::RiemannLiouville;
+        let is_shared = !self.law.is_linear() || orders.windows(2).any(|pair| pair[0] == pair[1]);
+        self.law.as_heated().is_none() && !(jumps && self.law.has_memories()) && !(self.law.has_series() && is_shared)
     }
 
     /// What a jump at t = 0 does that [`Self::settled`] does not tell ([`past::jolt`]).

@@ -119,6 +119,8 @@ pub(crate) struct ElementVariation {
     row: [Vec<f64>; 3],
     /// What the law tells of itself there.
     told: Vec<f64>,
+    /// What its leaves are there, where rows tell of them.
+    leaves: Vec<f64>,
 }
 
 /// One node.
@@ -218,6 +220,7 @@ impl Variation {
                 exact: None,
                 row: [(); 3].map(|()| vec![0.0; count]),
                 told: Vec::new(),
+                leaves: Vec::new(),
             }
         };
         let seeds = by.parameters.iter().enumerate().flat_map(|(p, own)| own.seeds.iter().map(move |seed| (p, seed)));
@@ -384,7 +387,7 @@ impl Variation {
             {
                 force.fill(0.0);
                 let [stored, derivative] = &mut spare;
-                let mut sum = ObservationVariation { force, stored, derivative, told: &mut told };
+                let mut sum = ObservationVariation { force, stored, derivative, told: &mut told, leaves: None };
                 let told = at_start(count, [stroke, rate], inputs);
                 equations.bank.vary_now(e, &equations.bank.point(e, 0), &told, law, &mut sum);
             }

@@ -447,6 +447,11 @@ impl Network {
         self.ask().has_guards(at)
     }
 
+    /// Whether parts of it stand one behind the other.
+    pub(crate) fn has_series(&self) -> bool {
+        self.ask().series_count() > 0
+    }
+
     /// Whether what it dissipates may begin at once at one of them, from a time that no derivative tells; springs that slip tell how far they slipped.
     pub(crate) fn begins_untold(&self, at: &Point) -> bool {
         self.has_guards(at) && self.any_leaf(|leaf| leaf.size().variables > 0 && leaf.slips().is_none())

@@ -49,6 +49,8 @@ pub struct ObservationVariation<'a> {
     pub derivative: &'a mut [f64],
     /// Of what leaves tell of themselves ([`super::Leaf::tells`]): a block for each number, appended leaf by leaf.
     pub told: &'a mut Vec<f64>,
+    /// Of what leaves are by themselves ([`super::LeafState`]), where it is asked for: blocks of stroke, rate, force and D^alpha x, appended leaf by leaf.
+    pub leaves: Option<&'a mut Vec<f64>>,
 }
 
 /// What parameters change of energy flows at the start and at the nodes of a step: s + 1 blocks of derivatives, to which every leaf adds its own.

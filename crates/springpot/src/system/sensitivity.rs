@@ -2,6 +2,7 @@
 
 use super::System;
 use crate::control::{Controller, ControllerNumber, ErrorTerm, FeedbackSlope, TermChange};
+use crate::elements::Element;
 use crate::law::Network;
 use crate::model::Model;
 use crate::observe::Quantity;
@@ -297,8 +298,8 @@ pub enum SensitivityError {
     },
 }
 
-/// Whether derivatives of a quantity are known.
-pub fn has_derivative(quantity: Quantity) -> bool {
+/// Whether derivatives of a quantity are known, of a system of these elements.
+pub fn has_derivative<'a>(quantity: Quantity, element: impl FnOnce(usize) -> Option<&'a Element>) -> bool {
     use crate::observe::ElementQuantity::{
         Derivative, Dissipated, Force, GeneralizedForce, Input, InputValue, Leaf, Length, Rate, Stored, Stroke, Told,
     };
@@ -312,10 +313,10 @@ pub fn has_derivative(quantity: Quantity) -> bool {
         | Quantity::Gripper(_)
         | Quantity::GripperError
         | Quantity::Energy(Kinetic | Potential | Actuators | Joints) => true,
-        Quantity::Element(_, of) => match of {
+        Quantity::Element(e, of) => match of {
             Length | Stroke | Rate | GeneralizedForce(_) | InputValue(_) | Told(_) => true,
             Force | Derivative | Stored | Dissipated | Input => true,
-            Leaf(..) => false,
+            Leaf(..) => element(e).is_some_and(Element::tells_changes_of_leaves),
         },
         Quantity::Energy(Residual) | Quantity::Derivative(_) => false,
     }

@@ -328,7 +328,13 @@ fn vary_at(
 ) {
     let mut sums = [(); 3].map(|()| vec![0.0; own.count]);
     let [force, stored, derivative] = &mut sums;
-    law.vary_at(at, state, told, own, &mut ObservationVariation { force, stored, derivative, told: &mut Vec::new() });
+    law.vary_at(
+        at,
+        state,
+        told,
+        own,
+        &mut ObservationVariation { force, stored, derivative, told: &mut Vec::new(), leaves: None },
+    );
     for (p, seen) in seen.iter_mut().enumerate() {
         push(seen, what, &[sums[0][p]]);
         push(seen, if what == "now" { "stored now" } else { "stored" }, &[sums[1][p]]);

@@ -135,7 +135,7 @@ impl Variation {
         for (e, element) in self.elements.iter().enumerate() {
             let at = at_start(count, [&element.stroke, &element.rate], &element.inputs);
             let (force, derivative, told) = (&mut force, &mut derivative, &mut told);
-            let mut sum = ObservationVariation { force, stored: &mut origin, derivative, told };
+            let mut sum = ObservationVariation { force, stored: &mut origin, derivative, told, leaves: None };
             equations.bank.vary_now(e, &equations.bank.point(e, 0), &at, &element.law, &mut sum);
         }
         self.works.done.origin = origin;

@@ -7,7 +7,7 @@ use crate::equations::node::Node;
 use crate::law::Point;
 use crate::law::variation::{ObservationVariation, PointVariation};
 use crate::model::Model;
-use crate::observe::{ElementQuantity, EnergyQuantity, Quantity, Snapshot};
+use crate::observe::{ElementQuantity, EnergyQuantity, LeafQuantity, Quantity, Snapshot};
 use crate::system::sensitivity::Seed;
 
 impl ElementVariation {
@@ -87,8 +87,12 @@ impl Variation {
         });
         let mut tells = std::mem::take(&mut self.elements[e].told);
         tells.clear();
+        let mut kept = std::mem::take(&mut self.elements[e].leaves);
+        kept.clear();
+        let is_of = |of: Quantity| matches!(of, Quantity::Element(own, ElementQuantity::Leaf(..)) if own == e);
+        let leaves = self.by.columns.iter().any(|column| is_of(column.of)).then_some(&mut kept);
         let (own, [force, stored, derivative]) = (&self.elements[e], &mut row);
-        let mut sum = ObservationVariation { force, stored, derivative, told: &mut tells };
+        let mut sum = ObservationVariation { force, stored, derivative, told: &mut tells, leaves };
         let told = own.told(count, i, theta);
         match theta {
             Some(theta) => equations.bank.vary_at(e, (theta, at), &told, &own.law, &mut sum),
@@ -99,7 +103,7 @@ impl Variation {
             let [force, ..] = &mut row;
             force.iter_mut().zip(change).for_each(|(force, change)| *force += change);
         }
-        (self.elements[e].row, self.elements[e].told) = (row, tells);
+        (self.elements[e].row, self.elements[e].told, self.elements[e].leaves) = (row, tells, kept);
     }
 
     /// What changes of a quantity at the row that was read last, parameter by parameter, no number where that is lost; `None` where nothing is known
@@ -175,7 +179,10 @@ impl Variation {
                     }
                     ElementQuantity::Dissipated => return self.work(e, 0),
                     ElementQuantity::Input => return self.work(e, 1),
-                    ElementQuantity::Leaf(..) => return None,
+                    ElementQuantity::Leaf(leaf, quantity) => {
+                        let place = LeafQuantity::ALL.iter().position(|own| *own == quantity)?;
+                        block(&element.leaves, LeafQuantity::ALL.len() * leaf + place)
+                    }
                 }
             }
             Quantity::Gripper(axis) => {

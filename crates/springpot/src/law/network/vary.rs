@@ -9,7 +9,7 @@ use crate::law::past::{Recalled, RecalledVariation, recall_variation as recall};
 use crate::law::state::StateRef;
 use crate::law::step::{Point, Response, Step};
 use crate::law::variation::{
-    ObservationVariation, PointVariation, PowersVariation, StepVariation, TakeError, VariationMut, VariationRef,
+    ObservationVariation, PointVariation, PowersVariation, StepVariation, TakeError, VariationMut, VariationRef, add,
 };
 
 /// A part whose derivatives can be asked for.
@@ -302,6 +302,27 @@ impl Vary for LeafPart {
         sum: &mut ObservationVariation,
     ) {
         let size = self.leaf.size();
-        self.leaf.vary_at(when, at, state.take(size), told, own.take(self.number_count(), size), sum);
+        let (own_state, share) = (state.take(size), own.take(self.number_count(), size));
+        let Some(leaves) = &mut sum.leaves else {
+            return self.leaf.vary_at(when, at, own_state, told, share, sum);
+        };
+        let count = share.count;
+        let [mut force, mut derivative] = [(); 2].map(|()| vec![0.0; count]);
+        let mut alone = ObservationVariation {
+            force: &mut force,
+            stored: &mut *sum.stored,
+            derivative: &mut derivative,
+            told: &mut *sum.told,
+            leaves: None,
+        };
+        self.leaf.vary_at(when, at, own_state, told, share, &mut alone);
+        add(sum.force, 1.0, &force);
+        add(sum.derivative, 1.0, &derivative);
+        let told_as = match (size.memories, self.leaf.linearised(at).order) {
+            (0, 1.0) => told.rate,
+            (0, _) => told.stroke,
+            _ => &derivative,
+        };
+        [told.stroke, told.rate, &force, told_as].into_iter().for_each(|block| leaves.extend_from_slice(block));
     }
 }

@@ -679,7 +679,8 @@ impl Vary for Heated {
             let mut spare = vec![0.0; count];
             let mut unused = vec![0.0; count];
             let told = &mut Vec::new();
-            let mut at_start = ObservationVariation { force: start, stored: &mut spare, derivative: &mut unused, told };
+            let mut at_start =
+                ObservationVariation { force: start, stored: &mut spare, derivative: &mut unused, told, leaves: None };
             let when = (When::Between, &place.point());
             self.law.ask().vary_at(when, &mut behind.clone(), &of_start, &mut own_behind.clone(), &mut at_start);
             self.law.ask().vary(&inner, &mut behind.clone(), &of_step, &mut own_behind.clone(), rest);

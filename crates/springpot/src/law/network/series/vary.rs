@@ -411,8 +411,13 @@ impl Series {
                     (PointVariation { stroke: starts.variable(k), rate, step: None, ..*told }, vec![0.0; count]);
                 let mut unused = vec![0.0; count];
                 let told_there = &mut Vec::new();
-                let mut sum =
-                    ObservationVariation { force, stored: &mut spare, derivative: &mut unused, told: told_there };
+                let mut sum = ObservationVariation {
+                    force,
+                    stored: &mut spare,
+                    derivative: &mut unused,
+                    told: told_there,
+                    leaves: None,
+                };
                 part.ask().vary_at((When::Between, &inside), &mut state, &told, &mut own, &mut sum);
                 (state, own)
             };
@@ -461,8 +466,9 @@ impl Series {
             let told = PointVariation { stroke: starts.variable(k), rate: &rate, step: None, ..*told };
             let inside = Point { stroke: strokes[k], rate: settled.rates[k], ..*at };
             let mut spare = vec![0.0; count];
-            let ObservationVariation { stored, derivative, told: tells, .. } = &mut *sum;
-            let mut sum = ObservationVariation { force: &mut spare, stored, derivative, told: tells };
+            let ObservationVariation { stored, derivative, told: tells, leaves, .. } = &mut *sum;
+            let leaves = leaves.as_deref_mut();
+            let mut sum = ObservationVariation { force: &mut spare, stored, derivative, told: tells, leaves };
             part.ask().vary_at((When::Between, &inside), state, &told, &mut of_parts, &mut sum);
         }
     }
@@ -705,8 +711,9 @@ impl Vary for Series {
                 passed: changes.passed.as_ref().map(|passed| &passed[(last - 1) * share.count..]),
             };
             let mut spare = vec![0.0; share.count];
-            let ObservationVariation { stored, derivative, told, .. } = &mut *sum;
-            let mut sum = ObservationVariation { force: &mut spare, stored, derivative, told };
+            let ObservationVariation { stored, derivative, told, leaves, .. } = &mut *sum;
+            let leaves = leaves.as_deref_mut();
+            let mut sum = ObservationVariation { force: &mut spare, stored, derivative, told, leaves };
             let when = (When::Within(&inner.step(&step), 1.0), &inside);
             part.ask().vary_at(when, state, &of_part, &mut of_parts, &mut sum);
         }

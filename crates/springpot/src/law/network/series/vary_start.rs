@@ -42,7 +42,8 @@ pub(super) fn begin(series: &Series, at: &Point, state: &mut StateRef, told: &Po
         parts[k].ask().begin_variation(&inside, &mut states[k].clone(), &told, &mut each[k].reborrow());
         let (mut force, mut spare) = (vec![0.0; count], [vec![0.0; count], vec![0.0; count]]);
         let [stored, derivative] = &mut spare;
-        let mut sum = ObservationVariation { force: &mut force, stored, derivative, told: &mut Vec::new() };
+        let mut sum =
+            ObservationVariation { force: &mut force, stored, derivative, told: &mut Vec::new(), leaves: None };
         let mut own = each[k].view();
         parts[k].ask().vary_at((When::Between, &inside), &mut states[k].clone(), &told, &mut own, &mut sum);
         force
