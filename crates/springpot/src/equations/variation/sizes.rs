@@ -139,6 +139,9 @@ impl Variation {
 
     /// Takes in how large the changes where the next step starts are.
     pub(super) fn take_sizes(&mut self) {
+        if !self.shares_in_steps() {
+            return;
+        }
         for (element, sizes) in self.elements.iter().zip(&mut self.sizes.so_far.hidden) {
             let now = element.law.variables();
             sizes.resize(now.len(), 0.0);

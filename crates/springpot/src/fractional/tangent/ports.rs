@@ -186,9 +186,13 @@ impl MemoryTangent {
         [0, 1, 2, 3].map(|p| self.piece.row(p))
     }
 
-    /// What the step that was committed last did to the past, and by how much its end moves.
-    pub(crate) fn take_past(&mut self) -> Option<(PastOfStep, &[f64])> {
-        let ports = self.ports.as_mut()?;
-        Some((ports.committed.take()?, &ports.moved))
+    /// What the step that was committed last did to the past.
+    pub(crate) fn take_past(&mut self) -> Option<PastOfStep> {
+        self.ports.as_mut()?.committed.take()
+    }
+
+    /// By how much the end of the last step moved that moves.
+    pub(crate) fn moved(&self) -> Option<&[f64]> {
+        self.ports.as_ref().map(|ports| &ports.moved[..])
     }
 }

@@ -21,6 +21,9 @@ pub(crate) struct Recording {
     starts: Starts,
     rows: Vec<Row>,
     entries: Entries,
+    /// Room to work in: a map that is made, and which columns something is made of.
+    map: Map,
+    used: Vec<bool>,
 }
 
 fn refuse<T>(what: impl Into<String>) -> Result<T, SensitivityError> {
@@ -46,6 +49,8 @@ impl Recording {
             starts: Starts::default(),
             rows: Vec::new(),
             entries: Entries::default(),
+            map: Map::default(),
+            used: Vec::new(),
         };
         (own, ones)
     }
@@ -125,7 +130,7 @@ impl Recording {
         if variation.leaves_branches() {
             return refuse("branches of control that are left but not yet crossed");
         }
-        let (mut state, mut starts) = (Map::default(), Starts::default());
+        let (state, mut starts) = (&mut self.map, Starts::default());
         let Columns { parameters, units, .. } = self.columns;
         let mut take = |block: &mut [f64]| {
             if block.iter().any(|change| *change != 0.0) {
@@ -146,6 +151,7 @@ impl Recording {
         if starts.columns.len() > units {
             return refuse("a state of more numbers than were expected");
         }
+        let state = self.map.take();
         self.close(variation, state);
         self.starts = starts;
         variation.hold(sampler.and_then(|sampler| sampler.held_changes()));
@@ -161,22 +167,22 @@ impl Recording {
     fn close(&mut self, variation: &mut Variation, state: Map) {
         let lost = variation.take_lost();
         let rows = std::mem::take(&mut self.rows);
-        let mut used = vec![false; self.columns.all];
-        state.mark(&mut used);
-        rows.iter().for_each(|row| row.quantities.mark(&mut used));
-        let mut memories = Vec::new();
+        let Self { map, used, columns, .. } = self;
+        used.clear();
+        used.resize(columns.all, false);
+        state.mark(used);
+        rows.iter().for_each(|row| row.quantities.mark(used));
+        let mut memories = Vec::with_capacity(columns.ports.len());
         for memory in variation.memories_mut() {
             let mut own = MemoryOfEntry::default();
             let told = memory.split_asked([0; 2]);
-            let pieces = memory.pieces().map(<[f64]>::to_vec);
-            if let Some((past, moved)) = memory.take_past() {
-                if past.has_moved() {
-                    own.kept.push(PIECES, moved);
-                }
-                own.past = Some(past);
-                pieces.iter().enumerate().for_each(|(p, row)| own.kept.push(p, row));
+            own.past = memory.take_past();
+            if let Some(past) = &own.past {
+                memory.pieces().into_iter().enumerate().for_each(|(p, row)| map.push(p, row));
+                memory.moved().into_iter().filter(|_| past.has_moved()).for_each(|moved| map.push(PIECES, moved));
             }
-            own.kept.mark(&mut used);
+            own.kept = map.take();
+            own.kept.mark(used);
             own.told = told.into_iter().map(|(column, told)| (column as u32, told)).collect();
             memories.push(own);
         }
@@ -205,6 +211,7 @@ impl Recording {
         before: Vec<[usize; 2]>,
     ) -> Result<(), SensitivityError> {
         let mut row = Row { number, quantities: Map::default(), told: Vec::new() };
+        let Self { map, used, .. } = self;
         for (k, of) in self.quantities.iter().enumerate() {
             if snapshot.value(*of).is_nan() {
                 continue;
@@ -213,13 +220,15 @@ impl Recording {
                 Some(mut values) => {
                     // What is infinite is as unknown as what is lost.
                     values.iter_mut().filter(|value| !value.is_finite()).for_each(|value| *value = f64::NAN);
-                    row.quantities.push(k, &values);
+                    map.push(k, &values);
                 }
                 None => return refuse("a column that has no derivative"),
             }
         }
-        let mut used = vec![false; self.columns.all];
-        row.quantities.mark(&mut used);
+        row.quantities = map.take();
+        used.clear();
+        used.resize(self.columns.all, false);
+        row.quantities.mark(used);
         for (m, (memory, before)) in variation.memories_mut().zip(before).enumerate() {
             let own = memory.split_asked(before).into_iter().filter(|(column, _)| used[*column]);
             row.told.extend(own.map(|(column, told)| (m as u32, column as u32, told)));

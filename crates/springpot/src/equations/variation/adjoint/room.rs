@@ -1,10 +1,12 @@
 //! How many columns it takes to stand for all that parameters change.
 
+use crate::elements::Element;
 use crate::equations::assembly::Equations;
 use crate::fractional::PortColumns;
-use crate::law::Network;
+use crate::law::{Derivative, Network};
+use crate::model::FrictionLaw;
 use crate::observe::{ElementQuantity, EnergyQuantity, Quantity};
-use crate::system::sensitivity::{Parameter, Sensitivity};
+use crate::system::sensitivity::{Parameter, Seed, Sensitivity};
 use crate::system::{Action, Motion, System};
 use std::sync::Arc;
 
@@ -39,14 +41,19 @@ impl Columns {
     ) -> Self {
         let [of_control, terms] = equations.control.as_ref().map_or([0; 2], |run| run.kept());
         let works = keeps_works(quantities);
-        let mut units = of_control + samples + pending(system) + if works { 2 * system.elements.len() + 1 } else { 0 };
+        let mut units = of_control + samples + pending(system, by);
+        units += if works { 2 * system.elements.len() + 1 } else { 0 };
+        let is_singular = |element: &Element| element.derivative == Derivative::RiemannLiouville;
+        if equations.bank.has_singular() || system.elements.iter().any(is_singular) {
+            units += system.elements.len();
+        }
         if let Motion::Forward(_) = system.motion {
             units += 3 * system.model.nv();
         }
         let mut rooms = Vec::new();
         for (e, element) in system.elements.iter().enumerate() {
             let size = equations.bank.law_state(e).map(|state| state.size()).unwrap_or_default();
-            units += size.variables + 3 * size.memories + 1;
+            units += size.variables + 3 * size.memories;
             let in_series = element.law.has_memories_in_series();
             let lags = if in_series { IN_SERIES } else { ALONE };
             let stored = quantities.contains(&Quantity::Element(e, ElementQuantity::Stored));
@@ -98,11 +105,19 @@ fn warms(law: &Network) -> bool {
     law.as_heated().is_some_and(|heated| heated.heat().thermal.is_some())
 }
 
-/// Numbers of what events set, and of the times of changes that are known before these are crossed.
-fn pending(system: &System) -> usize {
+/// Numbers of what events set, and of the times of changes that parameters move.
+fn pending(system: &System, by: &Sensitivity) -> usize {
     let sets = system.events.iter().map(|event| match &event.action {
         Action::Set(settings) => settings.len(),
         _ => 0,
     });
-    3 + sets.sum::<usize>()
+    let sets = sets.sum::<usize>();
+    let switches = |seed: &Seed| matches!(seed, Seed::Switch { .. });
+    let changes = sets > 0
+        || !system.control.is_empty()
+        || system.model.friction_laws().contains(&FrictionLaw::Sticking)
+        || system.elements.iter().any(|element| element.law.jumps())
+        || by.parameters.iter().any(|parameter| parameter.seeds.iter().any(switches));
+    // How much later the next one comes, and the last one came, to the motion and to works.
+    if changes { 3 + sets } else { 0 }
 }

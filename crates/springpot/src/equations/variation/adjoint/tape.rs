@@ -63,11 +63,13 @@ impl Map {
         self.columns.iter().for_each(|column| used[*column as usize] = true);
     }
 
-    /// Gives back what it has no use for.
-    pub(super) fn close(&mut self) {
-        self.rows.shrink_to_fit();
-        self.columns.shrink_to_fit();
-        self.values.shrink_to_fit();
+    /// What was taken in, with no room beside it; this one begins anew.
+    pub(super) fn take(&mut self) -> Self {
+        let taken = Self { rows: self.rows.to_vec(), columns: self.columns.to_vec(), values: self.values.to_vec() };
+        self.rows.clear();
+        self.columns.clear();
+        self.values.clear();
+        taken
     }
 
     fn bytes(&self) -> usize {
@@ -125,8 +127,7 @@ pub(crate) struct Entries {
 }
 
 impl Entries {
-    pub(super) fn push(&mut self, mut entry: Entry) {
-        entry.close();
+    pub(super) fn push(&mut self, entry: Entry) {
         self.bytes += entry.bytes();
         self.all.push(entry);
     }
@@ -138,12 +139,6 @@ impl Entries {
 }
 
 impl Entry {
-    fn close(&mut self) {
-        self.state.close();
-        self.memories.iter_mut().for_each(|memory| memory.kept.close());
-        self.rows.iter_mut().for_each(|row| row.quantities.close());
-    }
-
     fn bytes(&self) -> usize {
         let told = |told: &Told| size_of::<(u32, u32, Told)>() + told.bytes();
         let memory = |own: &MemoryOfEntry| {
