@@ -20,7 +20,7 @@ const FEW: usize = 100_000;
 /// A weight for a row and a quantity, of either sign.
 fn weight(row: usize, quantity: usize) -> f64 {
     // Some rest on a row without counting it.
-    if (row + quantity) % 7 == 0 {
+    if (row + quantity).is_multiple_of(7) {
         0.0
     } else {
         (1.7 * row as f64 + 0.9 * quantity as f64 * quantity as f64 + 0.3).sin()
