@@ -58,7 +58,7 @@ pub fn record(
     record_within(system, settings, rows, stop, MOST_KEPT)
 }
 
-/// As [`record`], keeping `most` bytes of it at most: whatever it is, gradients have the same bits.
+/// As [`record`], keeping `most` bytes of it at most: whatever it is, gradients have the same bits where what goes on from a checkpoint has.
 pub fn record_within(
     system: &System,
     settings: &Settings,
