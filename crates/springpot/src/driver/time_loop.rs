@@ -10,17 +10,18 @@ use crate::elements::MemoryRange;
 use crate::equations::context::{Context, Held};
 use crate::equations::control::{Eye, OfSamples, Sampler};
 use crate::equations::{Equations, Node, Recording, Variation, VariationState};
+use crate::fractional::Kind as Derivative;
 use crate::methods::solver::Solver;
 use crate::methods::stepper::{Behind, Target, Trial};
 use crate::observe::{Needs, Snapshot};
 use crate::signal::watched::FINEST;
 use crate::signal::{self, Agenda};
-use crate::system::Motion;
 use crate::system::definite::Definite;
 use crate::system::error::RunError;
 use crate::system::row_times::RowTimes;
-use crate::system::sensitivity::Sensitivity;
+use crate::system::sensitivity::{Sensitivity, SensitivityError};
 use crate::system::settings::{Settings, Stop};
+use crate::system::{Motion, System};
 use std::sync::{Arc, OnceLock};
 
 /// Steps above this many last bits of the end are whole multiples of such a bit.
@@ -131,6 +132,9 @@ impl Driver {
         let Recorder { evaluations: [at, ..], equations, variation, recording, settings, takes_elements_work, .. } =
             recorder;
         let Some(by) = &cx.system.sensitivity else { return Ok(()) };
+        if by.adjoint.is_some() {
+            refuse_to_go_back(cx.system, equations)?;
+        }
         let has_fixed_steps = self.solver.stepper().fixed_step().is_some();
         let (recorded, by) = recording_of(cx, by, equations, (sampler.as_deref(), has_fixed_steps));
         let mut begun = Variation::new(cx.system, &by, equations, has_fixed_steps)?;
@@ -754,6 +758,27 @@ fn recording_of(
     let samples = sampler.map_or(0, Sampler::numbers);
     let (recording, by) = Recording::of(cx.system, by, quantities, equations, (samples, has_fixed_steps));
     (Some(recording), by)
+}
+
+/// Refuses to go back to starts whose changes are in memories already: of pasts, and of what jumps at t = 0 before springpots in series.
+///
+/// # Errors
+/// [`SensitivityError::Backwards`].
+fn refuse_to_go_back(system: &System, equations: &Equations) -> Result<(), RunError> {
+    for (e, element) in system.elements.iter().enumerate() {
+        let Some(state) = equations.bank.law_state(e) else { continue };
+        let keeps = element.law.has_inner_variables() || !state.memories().is_empty();
+        let is_past = keeps && !element.past.is_of_derivative();
+        let jumps = element.derivative == Derivative::RiemannLiouville && element.law.has_memories_in_series();
+        if is_past || jumps {
+            let what = match is_past {
+                true => format!("the past of \"{}\"", element.name),
+                false => format!("springpots in series that jump at t = 0, of \"{}\"", element.name),
+            };
+            return Err(SensitivityError::Backwards { what }.into());
+        }
+    }
+    Ok(())
 }
 
 /// The end of a step of size h from t that must not pass `stop`; the last two steps before it share what is left.

@@ -90,7 +90,8 @@ impl Variation {
         let mut kept = std::mem::take(&mut self.elements[e].leaves);
         kept.clear();
         let is_of = |of: Quantity| matches!(of, Quantity::Element(own, ElementQuantity::Leaf(..)) if own == e);
-        let leaves = self.by.columns.iter().any(|column| is_of(column.of)).then_some(&mut kept);
+        let gone_back = self.by.adjoint.iter().flatten().copied();
+        let leaves = self.by.columns.iter().map(|column| column.of).chain(gone_back).any(is_of).then_some(&mut kept);
         let (own, [force, stored, derivative]) = (&self.elements[e], &mut row);
         let mut sum = ObservationVariation { force, stored, derivative, told: &mut tells, leaves };
         let told = own.told(count, i, theta);
