@@ -81,14 +81,13 @@ fn measured(data: &DataPlan, score: &RecordScore) -> Plot {
     let places = places(data, score);
     let y_scale = if data.kind.is_relative() { Scale::Log } else { Scale::Linear };
     let panel = |(column, own): (&springpot_scenario::DataColumn, &ColumnScore)| {
-        let curve = |(label, kind): (&str, &str), values: &[f64], places: &[(usize, f64)]| Curve {
+        let curve = |label: &str, values: &[f64], places: &[(usize, f64)]| Curve {
             label: label.to_owned(),
-            kind: kind.to_owned(),
             x: places.iter().map(|(_, at)| *at).collect(),
             y: places.iter().map(|(k, _)| values[*k]).collect(),
             ..Curve::default()
         };
-        let pair = |[measured, model]: [(&str, &str); 2], places: &[(usize, f64)]| {
+        let pair = |[measured, model]: [&str; 2], places: &[(usize, f64)]| {
             let is_dense = places.len() > 200;
             let measured = Curve { is_points: true, is_marked: !is_dense, ..curve(measured, &own.measured, places) };
             // Rows at several temperatures are no one curve.
@@ -96,12 +95,12 @@ fn measured(data: &DataPlan, score: &RecordScore) -> Plot {
             [measured, Curve { is_points: !is_one, ..curve(model, &own.model, places) }]
         };
         let curves = match amplitudes(data, score) {
-            None => pair([("measured", ""), ("model", "")], &places).to_vec(),
+            None => pair(["measured", "model"], &places).to_vec(),
             Some(_) => by_frequency(data, score, &places)
                 .iter()
                 .flat_map(|(frequency, places)| {
                     let label = format!("{} Hz", brief(frequency / TAU));
-                    pair([(&label, "measured"), (&label, "model")], places)
+                    pair(["measured", &label], places)
                 })
                 .collect(),
         };

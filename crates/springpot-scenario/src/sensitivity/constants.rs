@@ -98,10 +98,10 @@ fn below(
 ) {
     match &node.value {
         Value::Table(entries) => {
-            if let Some(text) = node.get("expression").and_then(|text| text.text()) {
-                if names(text, constants) {
-                    found.push((walked.clone(), slope(text, node.get("unit"), constants)));
-                }
+            if let Some(text) = node.get("expression").and_then(|text| text.text())
+                && names(text, constants)
+            {
+                found.push((walked.clone(), slope(text, node.get("unit"), constants)));
             }
             let is_other = |key: &str| !TEXTS.contains(&key) && key != "expression";
             for entry in entries.iter().filter(|entry| is_other(&entry.key) || entry.node.text().is_none()) {

@@ -14,7 +14,7 @@ const FREE: [f64; 2] = [0.0334, 0.0534];
 const LED: [f64; 2] = [0.0134, 0.0334];
 
 /// Laws of more numbers have half of them compared in each motion.
-const MANY: usize = 7;
+const MANY: usize = 3;
 
 /// Two sizes of a number of this name and unit, which are those of a stiff and light device, and the step of its differences.
 fn sizes(param: &Param) -> [f64; 3] {

@@ -88,7 +88,7 @@ pub(super) fn compare(varied: &Varied<'_>, plan: &Plan, stop: &Stop) -> Result<V
                 };
                 let runs = plans.into_iter().map(|plan| Ok(rows(&tight(plan), stop)?.0));
                 let runs = runs.collect::<Result<Vec<_>, Untold>>()?;
-                let found = one((&names, &told, &noise, &exact), &runs, (at, weights), (&parameter.name, step, size));
+                let found = one((&names, &noise), [&told, &exact], &runs, (at, weights), (&parameter.name, step, size));
                 let is_close = found.is_close();
                 best = Some(best.filter(|best| best.off <= found.off).unwrap_or(found));
                 if is_close {
@@ -147,7 +147,8 @@ fn tight(mut plan: Plan) -> Plan {
 
 /// The worst column of one parameter.
 fn one(
-    (names, told, noise, exact): (&[String], &[Vec<f64>], &[Noise], &[Vec<f64>]),
+    (names, noise): (&[String], &[Noise]),
+    [told, exact]: [&[Vec<f64>]; 2],
     runs: &[Vec<Vec<f64>>],
     (at, weights): (&[f64], &[f64]),
     (parameter, relative, size): (&str, f64, f64),

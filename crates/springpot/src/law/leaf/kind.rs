@@ -22,13 +22,16 @@ pub struct LeafKind {
     pub build: LeafBuild,
 }
 
+/// A leaf that others may hold too.
+pub type SharedLeaf = Arc<dyn Leaf>;
+
 /// What a leaf is built from.
 #[derive(Debug, Clone, Copy)]
 pub enum LeafBuild {
     /// Values (SI, in the order of the parameters, each within its range), and the derivative that springpots take.
-    Values(fn(&[Dual], Derivative) -> Result<Arc<dyn Leaf>, RuleError>),
+    Values(fn(&[Dual], Derivative) -> Result<SharedLeaf, RuleError>),
     /// The table in the file that its argument stands for.
-    Table(fn(&Arc<Table>) -> Arc<dyn Leaf>),
+    Table(fn(&Arc<Table>) -> SharedLeaf),
 }
 
 impl LeafKind {

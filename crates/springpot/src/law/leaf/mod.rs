@@ -31,7 +31,7 @@ pub use end_stop::EndStop;
 pub use friction::Friction;
 pub use hysteresis::Hysteresis;
 pub use jenkins::Jenkins;
-pub use kind::{LeafBuild, LeafKind};
+pub use kind::{LeafBuild, LeafKind, SharedLeaf};
 pub(super) use lagged::Lagged;
 pub use polynomial::Polynomial;
 pub use preload::Preload;
