@@ -442,10 +442,6 @@ impl Driver {
                         self.recorder.begin(cx)?;
                         self.recorder.open(cx, size)?;
                         self.begin_variation(cx)?;
-                        let Recorder { equations, variation, .. } = &mut self.recorder;
-                        if variation.as_ref().is_some_and(|variation| variation.shares_in_steps()) {
-                            equations.tell_starts(cx);
-                        }
                         self.planned = size;
                     }
                 }

@@ -202,14 +202,6 @@ impl Equations {
         Ok(())
     }
 
-    /// Tells the bank again where the elements are at the start of the step: what began anew there has forgotten how fast they are.
-    pub(crate) fn tell_starts(&mut self, cx: Context) {
-        for (e, (element, nodes)) in cx.system.elements.iter().zip(&self.elements).enumerate() {
-            let [reading, ..] = &nodes.readings;
-            self.bank.set_stroke(e, 0, element.stroke(reading.coordinate), reading.rate);
-        }
-    }
-
     fn linearise(&mut self, cx: Context, at: Node) -> Result<(), RunError> {
         let (model, Tangent { kinematics, slopes, is_placed, .. }) = (&cx.system.model, &mut self.tangent);
         let Scratch { forces, workspace, .. } = &mut self.scratch;

@@ -91,9 +91,7 @@ impl Kinks {
                 let ahead = if sign < 0.0 { -cubic } else { cubic };
                 let found = first_zero_of(&ahead, if on_it { EARLY } else { 0.0 });
                 let Some(theta) = found.filter(|theta| *theta > 0.0) else { continue };
-                let moved = values.iter().fold(0.0, |moved: f64, value| moved.max((value - values[0]).abs()));
-                let behind = -sign * values[STAGES];
-                if (0.0..=(SHARE * moved).max(noise)).contains(&behind) && theta > 0.9 {
+                if is_just_behind(values, sign, noise) && theta > 0.9 {
                     is_at_end = true;
                 } else if first.is_none_or(|(earliest, _)| theta < earliest) {
                     first = Some((theta, Kink { element, guard, sign }));
@@ -115,9 +113,8 @@ impl Kinks {
             guards.clear();
             bank.guards(*element, guards);
             guards.iter().any(|values| {
-                let moved = values.iter().fold(0.0, |moved: f64, value| moved.max((value - values[0]).abs()));
                 let sign = if values[0].abs() <= noise { values[1] } else { values[0] }.signum();
-                moved > noise && (0.0..=(SHARE * moved).max(noise)).contains(&(-sign * values[STAGES]))
+                moved(values) > noise && is_just_behind(values, sign, noise)
             })
         };
         elements.iter().copied().filter(|element| ends(element)).collect()
@@ -129,4 +126,14 @@ impl Kinks {
         bank.guards(kink.element, &mut self.guards);
         kink.sign * Cubic::through(&self.guards[kink.guard]).at(theta)
     }
+}
+
+/// How far a guard goes from where it is at the start of the step.
+fn moved(values: &Guard) -> f64 {
+    values.iter().fold(0.0, |moved: f64, value| moved.max((value - values[0]).abs()))
+}
+
+/// Whether a step ends on the kink of a guard, or so little behind it that nothing is to be gained; `sign` is that of the guard before it.
+fn is_just_behind(values: &Guard, sign: f64, noise: f64) -> bool {
+    (0.0..=(SHARE * moved(values)).max(noise)).contains(&(-sign * values[STAGES]))
 }

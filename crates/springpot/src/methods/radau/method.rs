@@ -188,10 +188,12 @@ impl Stepper for Radau {
     fn vary(&mut self, _: Context, recorder: &mut Recorder, step: &Target) -> Result<(), RunError> {
         let Recorder { equations, variation, .. } = recorder;
         let Some(variation) = variation else { return Ok(()) };
-        let leaning = equations.lean(step.size, &self.step.errors.noise);
         // What shares in the choice of steps was worked out with the step.
-        let is_regular =
-            variation.shares_in_steps() || self.step.vary(equations, variation, step.size, step.end_inputs());
+        if variation.shares_in_steps() {
+            return Ok(());
+        }
+        let leaning = equations.lean(step.size, &self.step.errors.noise);
+        let is_regular = self.step.vary(equations, variation, step.size, step.end_inputs());
         equations.stand(leaning);
         if is_regular {
             return Ok(());
