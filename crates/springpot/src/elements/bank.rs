@@ -343,6 +343,19 @@ impl ElementBank {
         state.map_or([[0.0; MAX_NODES]; MAX_NODES], |state| law.by_input(&told.step(self.step), state, input))
     }
 
+    /// The same where the stroke goes on through the step as fast as at its start, and inputs stay: of nodes nobody was told yet.
+    pub(crate) fn by_input_at_start(&self, e: usize, input: usize) -> [[f64; MAX_NODES]; MAX_NODES] {
+        let Banked { law, kept, told, .. } = &self.elements[e];
+        let Some(Kept { state, .. }) = kept else { return Default::default() };
+        let mut begun = told.clone();
+        let StepShape { h, nodes, .. } = self.step;
+        for (k, c) in nodes.positions().iter().enumerate() {
+            (begun.stroke[k + 1], begun.rate[k + 1]) = (told.stroke[0] + c * h * told.rate[0], told.rate[0]);
+        }
+        begun.inputs = told.inputs[..told.inputs.len() / (MAX_NODES + 1)].repeat(MAX_NODES + 1);
+        law.by_input(&begun.step(self.step), state, input)
+    }
+
     /// Force of element `e` at the last node of the step, N, as last evaluated.
     pub fn force(&self, e: usize) -> f64 {
         self.elements[e].response.force[self.step.nodes.count() - 1]

@@ -78,7 +78,7 @@ impl Equations {
             let mut pull = stiffness * bank.resolution(e) + LOST * self.force_at_start(e).abs();
             let mut input = |i: usize, lost: f64| {
                 if lost > 0.0 {
-                    let slopes = bank.by_input(e, i);
+                    let slopes = bank.by_input_at_start(e, i);
                     pull += lost * slopes.iter().flatten().fold(0.0, |largest: f64, slope| largest.max(slope.abs()));
                 }
             };

@@ -2,6 +2,7 @@
 
 mod held;
 mod refusals;
+mod resume;
 mod states;
 
 #[path = "../support/mod.rs"]

@@ -128,6 +128,8 @@ impl Prescribed {
     /// What a named scheme refuses.
     pub(crate) fn load(&mut self, cx: Context, recorder: &mut Recorder, state: StepperState) -> Result<(), RunError> {
         (self.energy_floor, self.largest, self.since) = (state.energy_floor, state.largest, state.since);
+        // What it tried on from there before is none of that state.
+        (self.behind, self.refused) = (None, None);
         let rows = recorder.settings.rows.clone();
         recorder.grid = on_grid::derivatives(cx, &self.trajectory, &rows, &mut recorder.scratch)?;
         Ok(())
