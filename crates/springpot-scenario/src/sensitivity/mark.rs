@@ -1,12 +1,12 @@
 //! Marks the numbers that are parameters, so that their readers tell what they are.
 
-use super::asked::Asked;
+use super::asked::{Asked, By};
 use super::rows::{self, LeftOut};
 use crate::changes::path::{self, Step, Target};
 use crate::reader::element::law_of;
 use crate::reader::{Context, Read, Refused, all};
 use crate::text::document::{Node, Value, shorten};
-use crate::text::refusal::RefusalKind;
+use crate::text::refusal::{Refusal, RefusalKind};
 use crate::units;
 use std::sync::Arc;
 
@@ -172,7 +172,31 @@ pub(super) fn values(ctx: &Context<'_>, asked: &Asked, first: usize) -> Read<Vec
                 return Err(Refused);
             }
         }
-        noted(own).ok_or(Refused)
+        let first = noted(own).ok_or(Refused)?;
+        for (k, target) in by.targets.iter().enumerate().skip(1) {
+            let other = noted(own + k).ok_or(Refused)?;
+            if other.0 != first.0 {
+                return Err(ctx.refuse(differ(by, (target, &other), &first)));
+            }
+        }
+        Ok(first)
     });
     all(each.collect::<Vec<_>>())
+}
+
+/// Refuses to move numbers together that are not the same.
+fn differ(by: &By, (target, other): (&Target, &(f64, String)), first: &(f64, String)) -> Refusal {
+    let said = |(value, unit): &(f64, String)| match &**unit {
+        "" | "1" => format!("{value}"),
+        unit => format!("{value} {unit}"),
+    };
+    let (path, value) = (&by.targets[0].written, said(first));
+    let message = format!(
+        "{:?} moves numbers together that differ: {path} is {value}, {} is {}",
+        by.name,
+        target.written,
+        said(other)
+    );
+    let help = format!("write {value} in both places, or let each follow from a constant, and take that as the path");
+    target.place.refuse(RefusalKind::Rule, message).help(help)
 }

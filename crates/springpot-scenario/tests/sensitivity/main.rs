@@ -272,8 +272,9 @@ fn geometry() {
 
 #[test]
 fn parameters_have_names_units_and_add_up() {
+    let arm = ARM.replace("parameters = { k = 90, c = 3 }", "parameters = { k = 40, c = 3 }");
     let text = format!(
-        "{ARM}\n[[parameter]]\nname = \"stiffness\"\npath = [\"element.tendon.k\", \"element.slide.k\"]\ntypical = \"1 kN/m\"\n\
+        "{arm}\n[[parameter]]\nname = \"stiffness\"\npath = [\"element.tendon.k\", \"element.slide.k\"]\ntypical = \"1 kN/m\"\n\
          [[parameter]]\npath = \"motion.start.q.q1\"\nbounds = [\"0 deg\", \"90 deg\"]\n\
          [sensitivity]\nof = [\"q.*\", \"tendon.force\"]\ncontrol = false\n"
     );
@@ -291,7 +292,7 @@ fn parameters_have_names_units_and_add_up() {
     assert!(columns[columns.len() - 8..].iter().zip(&names).all(|(column, (name, _))| column.name == *name));
     // Both move by one number.
     let found = rows(&plan, &[names[0].0.to_owned()]);
-    let mut each = scenario(ARM);
+    let mut each = scenario(&arm);
     each.differentiate("element.tendon.k,element.slide.k").unwrap();
     let each = self::plan(&each).unwrap();
     let parts = rows(&each, &["d(q.q1)/d(element.tendon.k)".to_owned(), "d(q.q1)/d(element.slide.k)".to_owned()]);
@@ -339,6 +340,10 @@ fn what_cannot_be_a_parameter_is_refused_by_its_path() {
         ("[sensitivity]\nby = \"element.tendon.k\"\nmethod = \"adjoint\"", "there is no [[metric]]"),
         ("[sensitivity]\nby = \"element.tendon.k\"\nhow = 1", "unknown key `how`"),
         ("[[parameter]]\nname = \"k\"", "has no `path`"),
+        (
+            "[[parameter]]\npath = [\"element.tendon.k\", \"element.slide.k\"]",
+            "\"element.tendon.k\" moves numbers together that differ: element.tendon.k is 40 N/m, element.slide.k is 90 N/m",
+        ),
         ("[[parameter]]\npath = \"element.tendon.k\"\nbounds = [60, 50]", "goes from 60 to 50"),
         (
             "[[parameter]]\npath = \"element.tendon.k\"\nbounds = [50, 60]",
