@@ -462,3 +462,50 @@ fn cases_have_the_same_columns() {
     assert!(first.iter().any(|name| name == "d(thermo.force)/d(motion.controller.kp.q1)"));
     assert!((1..4).all(|case| columns(case) == first));
 }
+
+/// What nobody knows a derivative of is refused, with what it is, and is never 0.
+#[test]
+fn what_is_not_known_is_refused() {
+    let refused = |text: &str, path: &str, column: Option<&str>| {
+        let mut asked = scenario(text);
+        if text.contains("[[sweep]]") {
+            asked.set("sweep=").unwrap();
+            asked.set("figure=").unwrap();
+        }
+        asked.differentiate(path).unwrap();
+        if let Some(column) = column {
+            asked.set(&format!("sensitivity.of={column:?}")).unwrap();
+        }
+        said(&asked)
+    };
+    let torque = "torque = { q1 = 0.4, q2 = \"0.5*cos(2*pi*f*t)\" }";
+    let moved = ARM.replace(torque, "prescribed = { q1 = \"0.3 + 0.2*sin(f*t)\" }").replace("q1 = 0.3, q2", "q2");
+    let sampled = "torque = { q1 = { expression = \"-0.1*tendon.derivative\", unit = \"N*m\", sample = \"10 ms\" } }";
+    let slow = "controller = { kind = \"computed-torque\", kp = 60, kd = 9, compensate_elements = true, rate_limits = { q1 = 60 }, reference = { kind = \"move\", to = { q1 = 0.6, q2 = 0.1, q3 = 0.1 }, duration = 0.3 } }";
+    for (text, path, column, words) in [
+        (ARM, "element.tendon.k", Some("energy.residual"), "\"energy.residual\" cannot be differentiated"),
+        (&*moved, "constants.f", None, "motion.prescribed.q1 follows from it, and no derivative by that is known"),
+        (&ARM.replace(torque, sampled), "element.tendon.k", None, "D^alpha x that feedback samples"),
+        (
+            &ARM.replace(torque, slow),
+            "motion.controller.kp",
+            None,
+            "limits of rates of forces that take the elements off",
+        ),
+    ] {
+        let said = refused(text, path, column);
+        assert!(said.contains(words), "{path}: {said}");
+    }
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/magnetorheological_voltage.toml");
+    let along_a_path = std::fs::read_to_string(folder).unwrap();
+    for (path, words) in [
+        ("motion.x", "motion.x cannot be a parameter: no derivative by it is known"),
+        ("motion.guess.q3", "motion.guess.q3 cannot be a parameter: no derivative by it is known"),
+        ("robot.gripper.point.0", "no derivative by geometry is known of joints that follow a path of the gripper"),
+        ("element.damper.to.point.1", "no derivative by geometry is known of joints that follow a path of the gripper"),
+        ("robot.body.forearm.joint.origin.0", "no derivative by geometry is known"),
+    ] {
+        let said = refused(&along_a_path, path, None);
+        assert!(said.contains(words), "{path}: {said}");
+    }
+}
