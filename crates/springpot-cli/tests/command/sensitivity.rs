@@ -399,3 +399,30 @@ fn gradients_back_through_the_run_are_those_beside_it() {
     let checked = ["sensitivity", "arm.toml", "--by", by, "--check", "--set", "sensitivity.method=\"adjoint\""];
     place.springpot(&checked).ends(2, &["--check compares columns", "method = \"forward\""]);
 }
+
+/// A torque that switches at t = 0, where one way is another than the other: both methods say so, of the parameter that moves it alone.
+#[test]
+fn what_ends_is_said_by_both_methods() {
+    let text = r#"
+constants.t_s = 0
+robot = { gravity = [0, 0, 0], body = [{ name = "mass", joint = { name = "x", kind = "prismatic", axis = [1, 0, 0] }, mass = 2 }] }
+motion = { kind = "forward", torque = { x = "4*step(t - t_s)" } }
+time = { end = 1, output_step = 0.05 }
+element = [{ name = "pad", joint = "x", law = "fractional-kelvin-voigt", parameters = { k = 50, c = 50, alpha = 0.5 } }]
+metric = [{ name = "swing", of = "q.x", kind = "rms" }]
+sensitivity = { by = ["constants.t_s", "element.pad.k"], control = false }
+"#;
+    let place = Place::with(text);
+    let run = |method: &str| {
+        let method = format!("sensitivity.method=\"{method}\"");
+        let told = place.springpot(&["run", "arm.toml", "--out", "r", "--no-figures", "--set", &method]);
+        assert_eq!(told.code, Some(0), "{told:?}");
+        assert!(told.stderr.contains("derivatives by constants.t_s end at t = 0 s: "), "{}", told.stderr);
+        assert!(!told.stderr.contains("element.pad.k"), "{}", told.stderr);
+        (place.record("r")["sensitivity"]["lost"].clone(), place.table("r/gradient.csv").numbers("derivative"))
+    };
+    let ((forward, truth), (adjoint, found)) = (run("forward"), run("adjoint"));
+    assert_eq!(adjoint, forward);
+    assert_eq!(adjoint[0]["parameter"], "constants.t_s");
+    assert!(truth[0].is_nan() && found[0].is_nan() && (found[1] / truth[1] - 1.0).abs() < 1e-10);
+}

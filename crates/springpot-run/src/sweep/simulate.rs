@@ -97,8 +97,13 @@ pub(super) fn simulate(
         }
     };
     let limits = rows.watch.passed();
-    let lost = rows.losses.as_ref().map_or_else(Vec::new, |losses| losses.lost().to_vec());
-    let outcome = outcome.and_then(|tape| sink.metrics(&plan, tape.as_ref().map(|tape| Back { tape, stop })));
+    let mut lost = rows.losses.as_ref().map_or_else(Vec::new, |losses| losses.lost().to_vec());
+    let outcome = outcome.and_then(|tape| {
+        if let Some(tape) = &tape {
+            lost = tape.lost(stop)?;
+        }
+        sink.metrics(&plan, tape.as_ref().map(|tape| Back { tape, stop }))
+    });
     let (error, interrupted, metrics) = match outcome {
         Ok(metrics) => (None, false, Some(metrics)),
         // What was kept last is what can be gone on from.

@@ -3,7 +3,7 @@
 use super::{plan, scenario};
 use springpot::driver;
 use springpot::observe::Quantity;
-use springpot::sensitivity::{DerivativeColumn, Sensitivity, SensitivityError, Share};
+use springpot::sensitivity::{DerivativeColumn, Lost, Sensitivity, SensitivityError, Share};
 use springpot::system::{RunError, Settings, Stop, System};
 use springpot::table::Column;
 use std::sync::Arc;
@@ -38,6 +38,24 @@ fn rows(system: &System, settings: &Settings) -> Vec<Vec<f64>> {
     rows
 }
 
+/// Rows of a run, and by which parameters derivatives end in it.
+#[derive(Default)]
+struct Kept {
+    rows: Vec<Vec<f64>>,
+    lost: Vec<Lost>,
+}
+
+impl driver::Rows for Kept {
+    fn row(&mut self, values: &[f64]) -> std::io::Result<()> {
+        self.rows.push(values.to_vec());
+        Ok(())
+    }
+
+    fn lost(&mut self, lost: Lost) {
+        self.lost.push(lost);
+    }
+}
+
 /// Compares the gradients of sums over all rows of these columns, by the numbers at these paths, found forwards and backwards; one text in three also cut
 /// into stretches that are run again. Whether those have changed nothing to the bit.
 pub(crate) fn goes_back(text: &str, columns: &[&str], paths: &[&str]) -> bool {
@@ -65,7 +83,9 @@ pub(crate) fn goes_back(text: &str, columns: &[&str], paths: &[&str]) -> bool {
         Some(Arc::new(Sensitivity { columns: Vec::new(), adjoint: Some(quantities.clone()), ..by.clone() }));
     let mut plain = system;
     plain.sensitivity = None;
-    let (all, forward) = (rows(&plain, settings), rows(&forward, settings));
+    let mut kept = Kept::default();
+    driver::run(&forward, settings, &mut kept, &Stop::new(false)).1.unwrap();
+    let (all, Kept { rows: forward, lost }) = (rows(&plain, settings), kept);
     let width = all[0].len();
     let share = |k: usize| (0..all.len()).map(move |row| Share { row, quantity: k, slope: weight(row, k) }).collect();
     let shares: Vec<Vec<Share>> = (0..quantities.len()).map(share).collect();
@@ -88,6 +108,18 @@ pub(crate) fn goes_back(text: &str, columns: &[&str], paths: &[&str]) -> bool {
         assert!(tape.bytes() > 0 && tape.bytes() <= most);
         let bits = |row: &Vec<f64>| row.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
         assert_eq!(own, all.iter().map(bits).collect::<Vec<_>>(), "rows are those of the plain run");
+        let ended = tape.lost(&Stop::new(false)).unwrap();
+        for forwards in &lost {
+            let own = ended.iter().find(|own| own.parameter == forwards.parameter);
+            let own = own.unwrap_or_else(|| panic!("back {forwards:?} does not end"));
+            // Of two changes at one time a number may be moved apart by what a parameter moves together.
+            assert!(
+                own == forwards || own.t <= forwards.t && own.why.starts_with("two changes"),
+                "{own:?} {forwards:?}"
+            );
+        }
+        let is_known = |own: &Lost| lost.iter().any(|forwards| forwards.parameter == own.parameter);
+        assert!(ended.iter().all(|own| is_known(own) || own.why.starts_with("two changes")), "{ended:?} {lost:?}");
         Some(tape.gradients(&shares, &Stop::new(false)).unwrap())
     });
     let Some(found) = found.collect::<Option<Vec<_>>>() else { return true };

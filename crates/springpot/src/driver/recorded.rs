@@ -4,11 +4,11 @@ use super::run::{Begun, go};
 use super::state::Checkpoint;
 use super::time_loop::Driver;
 use crate::account::recorder::Recorder;
-use crate::equations::{Backwards, Entries, Starts};
+use crate::equations::{Backwards, Endings, Entries, Starts};
 use crate::observe::Snapshot;
 use crate::system::System;
 use crate::system::error::RunError;
-use crate::system::sensitivity::Share;
+use crate::system::sensitivity::{Lost, Share};
 use crate::system::settings::{Settings, Stop};
 
 /// Most that a [`Tape`] keeps of the maps of a run, bytes. Beyond it stretches of the run are run again when they are gone back through.
@@ -44,12 +44,14 @@ struct Stretch {
     from: Option<(Checkpoint, Starts)>,
     /// `None` where there was no room.
     entries: Option<Entries>,
+    /// Whether derivatives end in it.
+    has_endings: bool,
 }
 
 impl Kept {
     /// Of a run, or of a stretch that is run again.
     pub(super) fn new(most: usize, is_again: bool) -> Self {
-        Self { most, is_again, stretches: vec![Stretch { from: None, entries: None }] }
+        Self { most, is_again, stretches: vec![Stretch { from: None, entries: None, has_endings: false }] }
     }
 
     /// Ends the stretch at hand where it is long enough; everything is settled. `true` where a stretch that is run again is over.
@@ -67,7 +69,11 @@ impl Kept {
         let (entries, starts) = (recording.take_entries(), recording.starts().clone());
         self.take(entries);
         if !self.is_again {
-            self.stretches.push(Stretch { from: Some((checkpoint(driver), starts)), entries: None });
+            self.stretches.push(Stretch {
+                from: Some((checkpoint(driver), starts)),
+                entries: None,
+                has_endings: false,
+            });
         }
         Ok(self.is_again)
     }
@@ -76,6 +82,7 @@ impl Kept {
     fn take(&mut self, entries: Entries) {
         let Some((last, earlier)) = self.stretches.split_last_mut() else { return };
         let mut left = self.most.saturating_sub(self.most / STRETCHES + entries.bytes());
+        last.has_endings = entries.has_endings();
         last.entries = Some(entries);
         for stretch in earlier.iter_mut().rev() {
             let bytes = stretch.entries.as_ref().map_or(0, Entries::bytes);
@@ -125,6 +132,24 @@ impl Tape {
             }
         }
         Ok(back.gradients())
+    }
+
+    /// By which parameters derivatives end, and where: none where they do not.
+    ///
+    /// # Errors
+    /// [`RunError::Interrupted`] in a stretch that is run again.
+    pub fn lost(&self, stop: &Stop) -> Result<Vec<Lost>, RunError> {
+        let Some(last) = self.kept.stretches.iter().rposition(|stretch| stretch.has_endings) else {
+            return Ok(Vec::new());
+        };
+        let mut endings = Endings::new(self.sizes);
+        for stretch in &self.kept.stretches[..=last] {
+            match &stretch.entries {
+                Some(entries) => endings.go(entries),
+                None => endings.go(&self.again(stretch, stop)?),
+            }
+        }
+        Ok(endings.lost())
     }
 
     /// Runs a stretch again.

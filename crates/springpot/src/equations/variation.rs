@@ -30,7 +30,7 @@ use crate::model::{FrictionLaw, Model};
 use crate::observe::Quantity;
 use crate::system::sensitivity::{Seed, Sensitivity, SensitivityError};
 use crate::system::{Motion, System};
-pub(crate) use adjoint::{Backwards, Entries, Recording, Starts};
+pub(crate) use adjoint::{Backwards, Endings, Entries, Recording, Starts};
 use energies::Works;
 pub(crate) use found::Found;
 use inertias::Inertias;

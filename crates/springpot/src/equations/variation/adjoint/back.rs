@@ -111,8 +111,8 @@ impl Backwards {
             own.kept.add_transposed(&kept, &mut by, count);
         }
         entry.state.add_transposed(&self.state, &mut by, count);
-        for column in &entry.lost {
-            let own = by[*column as usize * count..][..count].iter_mut().zip(&self.counts);
+        for ended in &entry.lost {
+            let own = by[ended.parameter * count..][..count].iter_mut().zip(&self.counts);
             own.filter(|(_, counts)| **counts).for_each(|(by, _)| *by = f64::NAN);
         }
         self.sum.iter_mut().zip(&by).for_each(|(sum, by)| *sum += by);

@@ -2,6 +2,7 @@
 
 use crate::equations::variation::Variation;
 use crate::fractional::MemoryTangent;
+use crate::system::sensitivity::Lost;
 
 impl Variation {
     /// Every block, in an order of its own; of memories what they keep beside their modes.
@@ -34,10 +35,9 @@ impl Variation {
         elements.iter_mut().flat_map(|element| element.law.memories_mut()).chain(of_control)
     }
 
-    /// Columns whose derivatives ended, which are whole again then.
-    pub(super) fn take_lost(&mut self) -> Vec<u32> {
-        let lost = self.saltation.lost.iter_mut().enumerate();
-        lost.filter_map(|(column, lost)| lost.take().map(|_| column as u32)).collect()
+    /// What ended, column by column, and is whole again then.
+    pub(super) fn take_lost(&mut self) -> Vec<Lost> {
+        self.saltation.lost.iter_mut().filter_map(Option::take).collect()
     }
 
     /// Works out what follows from the blocks where the step starts, which are others.

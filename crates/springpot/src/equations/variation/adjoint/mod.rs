@@ -8,11 +8,13 @@
 
 mod back;
 mod blocks;
+mod endings;
 mod record;
 mod room;
 mod tape;
 
 pub(crate) use back::Backwards;
+pub(crate) use endings::Endings;
 pub(crate) use record::Recording;
 pub(super) use room::keeps_works;
 pub(crate) use tape::{Entries, Starts};

@@ -1,6 +1,7 @@
 //! What is kept of a run so that one can go back through it: of each step the linear map of what parameters change.
 
 use crate::fractional::{PastOfStep, Told};
+use crate::system::sensitivity::Lost;
 
 /// Rows of a matrix of which most are 0.
 #[derive(Debug, Default)]
@@ -21,6 +22,15 @@ impl Map {
         }
         if self.values.len() > before {
             self.rows.push((row as u32, self.values.len() as u32));
+        }
+    }
+
+    /// Hands over row and column of all that is not 0.
+    pub(super) fn each(&self, mut take: impl FnMut(usize, usize)) {
+        let mut from = 0;
+        for (row, end) in &self.rows {
+            self.columns[from..*end as usize].iter().for_each(|column| take(*row as usize, *column as usize));
+            from = *end as usize;
         }
     }
 
@@ -101,8 +111,8 @@ pub(super) struct Entry {
     pub(super) state: Map,
     pub(super) memories: Vec<MemoryOfEntry>,
     pub(super) rows: Vec<Row>,
-    /// Columns whose derivatives ended in it.
-    pub(super) lost: Vec<u32>,
+    /// What ended in it, column by column.
+    pub(super) lost: Vec<Lost>,
 }
 
 /// What a memory does from one cut to the next.
@@ -130,6 +140,11 @@ impl Entries {
     pub(super) fn push(&mut self, entry: Entry) {
         self.bytes += entry.bytes();
         self.all.push(entry);
+    }
+
+    /// Whether derivatives end in it.
+    pub(crate) fn has_endings(&self) -> bool {
+        self.all.iter().any(|entry| !entry.lost.is_empty())
     }
 
     /// How much they hold, bytes.
