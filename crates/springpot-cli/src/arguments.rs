@@ -363,7 +363,7 @@ pub(crate) struct FitOptions {
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub(crate) overrides: Vec<String>,
     /// Number of starts, in place of that of [fit]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000), allow_negative_numbers = true)]
     pub(crate) starts: Option<u32>,
     /// How intervals are found, in place of that of [fit]: wald, profile or bootstrap(COUNT)
     #[arg(long, value_name = "HOW")]

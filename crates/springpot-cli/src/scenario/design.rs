@@ -40,12 +40,19 @@ fn told(options: &DesignOptions, (catalog, disk): (&Catalog, &Disk), asked: &Ask
         _ => Ending::Failed,
     };
     complain(found);
-    if !found.is_admissible() || ending == Ending::Interrupted {
-        terminal::print(&text);
-        return ending;
-    }
     let stem = Path::new(&asked.name).file_stem().unwrap_or("run".as_ref()).to_owned();
     let out = options.out.clone().unwrap_or_else(|| Path::new("results").join(stem));
+    if !found.is_admissible() || ending == Ending::Interrupted {
+        // No run belongs to it.
+        terminal::print(&text);
+        if ending == Ending::Interrupted {
+            terminal::print_error("interrupted: what was found is the best so far\n");
+        }
+        return match output::written(&out, put(&out, found)) {
+            Ending::Done => ending,
+            other => other,
+        };
+    }
     // What the command line set stands in the text by now.
     let best = Asked { text: found.text.clone(), overrides: Vec::new(), file: None, ..asked.clone() };
     let new = NewRun { out: Some(out.clone()), figures: !options.no_figures, ..NewRun::of(best) };
@@ -54,15 +61,20 @@ fn told(options: &DesignOptions, (catalog, disk): (&Catalog, &Disk), asked: &Ask
     if ran != Ending::Done {
         return ran;
     }
-    let files = [("design.json", found.json()), ("steps.csv", found.steps()), ("designed.toml", found.text.clone())];
-    for (name, text) in files {
-        if let Err(error) = output::write(&out.join(name), text.as_bytes()) {
-            diagnostic::error(format!("{}: {error}", out.join(name).display()));
-            return Ending::Failed;
-        }
+    match output::written(&out, put(&out, found)) {
+        Ending::Done => {}
+        other => return other,
     }
     terminal::print(&text);
     ending
+}
+
+/// Writes what was found; the designed scenario where there is one.
+fn put(out: &Path, found: &Designed) -> std::io::Result<()> {
+    std::fs::create_dir_all(out)?;
+    let designed = found.is_admissible().then(|| ("designed.toml", found.text.clone()));
+    let files = [("design.json", found.json()), ("steps.csv", found.steps())].into_iter().chain(designed);
+    files.into_iter().try_for_each(|(name, text)| output::write(&out.join(name), text.as_bytes()))
 }
 
 /// Why it is no minimum, where it is none.

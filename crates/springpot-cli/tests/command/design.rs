@@ -1,7 +1,9 @@
 //! Designs, as a user asks for them.
 
-use crate::support::Place;
+use crate::support::{Place, ended, signal, worked};
 use serde_json::Value;
+use std::process::Stdio;
+use std::time::Instant;
 
 /// A mass on a springpot, thrown.
 const THROWN: &str = r#"
@@ -159,4 +161,43 @@ fn what_cannot_be_designed_is_refused() {
     let far = "[design]\nminimise = \"ring\"\nstarts = 2\nconstraints = [{ metric = \"effort\", max = \"1 mN\" }]\n";
     place.write("arm.toml", format!("{THROWN}{far}"));
     place.springpot(&["design", "arm.toml", "--out", "none"]).ends(1, &["no start leads to a point"]);
+    let found: Value = serde_json::from_str(&place.read("none/design.json")).unwrap();
+    assert_eq!((&found["status"], found["objective"]["before"].is_f64()), (&"infeasible".into(), true));
+    assert!(!place.path("none/designed.toml").exists());
+}
+
+#[test]
+fn an_order_at_its_end_is_designed_from_where_it_starts() {
+    let text = THROWN.replace("alpha = 0.5 }", "alpha = 1 }");
+    let from = ORDER.replace("0.9]", "0.9]\nstart = 0.5");
+    let goal = "[design]\nminimise = \"effort\"\nstarts = 1\n";
+    let place = Place::new();
+    let found = design(&place, &format!("{text}{from}{goal}"), &[]);
+    let same = design(&place, &format!("{THROWN}{ORDER}{goal}"), &[]);
+    assert_eq!((&found["parameters"][1], &found["objective"]), (&same["parameters"][1], &same["objective"]));
+    place.write("arm.toml", format!("{text}{}{goal}", ORDER.replace("0.9]", "1]")));
+    place.springpot(&["design", "arm.toml"]).ends(2, &["it is 1", "start at 0.01 or 0.99"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_leaves_the_best_so_far() {
+    let place = Place::with(&format!("{THROWN}{ORDER}[design]\nminimise = \"effort\"\nstarts = 1000\n"));
+    let begun = Instant::now();
+    let mut command = place.command(&["design", "arm.toml", "--out", "d"]);
+    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    crate::support::wait_for("work", || worked(&child, begun) > 1.0);
+    signal(&child, "-INT");
+    let told = ended(child);
+    assert_eq!(told.code, Some(130), "{}", told.stderr);
+    assert!(told.stderr.contains("interrupted: what was found is the best so far"), "{}", told.stderr);
+    let found: Value = serde_json::from_str(&place.read("d/design.json")).unwrap();
+    assert_eq!(found["status"], "interrupted");
+    let [before, after] = ["before", "after"].map(|key| found["objective"][key].as_f64().unwrap());
+    assert!(after < before, "{after} {before}");
+    assert!(place.read("d/steps.csv").lines().count() > 5);
+    let value = found["parameters"][0]["value"].as_f64().unwrap();
+    assert!(place.read("d/designed.toml").contains(&format!("c = {value:?}")));
+    // The folder takes results.
+    place.done(&["design", "arm.toml", "--out", "d", "--starts", "1", "--no-figures"]);
 }

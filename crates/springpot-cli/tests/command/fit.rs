@@ -384,6 +384,29 @@ fn what_no_data_depend_on_and_what_cannot_begin() {
     place.write("pad.toml", format!("{}{DMA}", pad("law = \"dashpot\"", &[("c", 2.0)])));
     place.springpot(&["fit", "pad.toml"]).ends(1, &["no start can be evaluated"]);
     assert_eq!(record(&place, "results/pad")["status"], "failed");
+    // An order at its end is sought from where its block says.
+    let at_its_end = pad("law = \"springpot\"", &[("c", 40.0), ("alpha", 0.0)]);
+    place.write("pad.toml", format!("{at_its_end}{DMA}"));
+    place.springpot(&["fit", "pad.toml"]).ends(2, &["it is 0", "start at 0.01 or 0.99"]);
+    let starts = at_its_end.replace("path = \"element.pad.alpha\"", "path = \"element.pad.alpha\"\nstart = 0.5");
+    assert!(starts != at_its_end);
+    place.write("pad.toml", format!("{starts}{DMA}"));
+    place.done(&["fit", "pad.toml"]);
+    let order = &record(&place, "results/pad")["parameters"][1];
+    assert!((0.1..0.9).contains(&number(&order["value"])) && number(&order["start"]) == 0.5, "{order}");
+}
+
+#[test]
+fn losses_windows_and_starts_that_are_none() {
+    let text = pad("law = \"springpot\"", &[("c", 40.0), ("alpha", 0.4)]);
+    let place = place(&format!("{text}{DMA}loss = \"huber\"\n"));
+    place.write("dma.csv", moduli(50.0, 60.0, 0.3, 0.02, 8));
+    place.springpot(&["fit", "pad.toml"]).ends(2, &["is \"huber\", which is no loss", "{ huber = 1.345 }"]);
+    place.write("pad.toml", format!("{text}{DMA}loss = 1.345\n"));
+    place.springpot(&["fit", "pad.toml"]).ends(2, &["is 1.345, which is no loss", "\"squares\""]);
+    place.write("pad.toml", format!("{text}{DMA}"));
+    place.springpot(&["fit", "pad.toml", "--starts", "-3"]).ends(2, &["-3 is not in 1..=100000"]);
+    place.springpot(&["fit", "pad.toml", "--starts", "0"]).ends(2, &["0 is not in 1..=100000"]);
 }
 
 #[cfg(unix)]

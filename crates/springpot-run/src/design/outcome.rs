@@ -136,13 +136,15 @@ impl Designed {
             None => "infeasible",
         };
         let multipliers = best.map_or_else(Vec::new, |k| found[k].descent.multipliers.clone());
+        let tried = best.and_then(|k| found[k].tried.iter().rev().find(|tried| tried.values == values));
         let constraints = design.constraints.iter().enumerate().map(|(k, one)| {
-            let value = after.as_ref().map_or(f64::NAN, |after| problem.constrained(after, one));
+            let known = tried.map_or(f64::NAN, |tried| tried.constraints[k]);
+            let value = after.as_ref().map_or(known, |after| problem.constrained(after, one));
             let multiplier = multipliers.get(k).copied().unwrap_or(0.0);
             let active = (value - one.limit).abs() <= 10.0 * HOLDS * one.limit.abs().max(1e-3 * value.abs());
             (problem.case().metrics[one.metric].metric.name.clone(), value, one.limit, active, multiplier)
         });
-        let constraints = constraints.collect();
+        let constraints: Vec<_> = constraints.collect();
         Self {
             status,
             parameters: problem.parameters().to_vec(),

@@ -44,7 +44,7 @@ pub(super) fn predict(record: &Record<'_>, values: &[f64], wanted: &[bool]) -> R
         let inputs = inputs(row);
         let at = Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &inputs };
         let own = |law: &Network, clock: f64| answer(data.kind, law, (&at, data.at[row]), clock);
-        let asked = || Failed("no derivative of its modulus is known".to_owned());
+        let asked = || Failed(format!("no modulus of the law \"{}\" is known", material.entry.name));
         let value = match amplitude {
             Some(amplitude) => harmonic(data.kind, &material.law, (&at, data.at[row]), amplitude[row])?,
             None => own(&material.law, 0.0).ok_or_else(asked)?.map(|[value, _]| value),
@@ -58,6 +58,10 @@ pub(super) fn predict(record: &Record<'_>, values: &[f64], wanted: &[bool]) -> R
         if !is_differentiated || amplitude.is_some() {
             continue;
         }
+        let unknown = |p: usize| {
+            let name = &record.fitting.plan().parameters[data.parameters[p]].sought.name;
+            Failed(format!("no derivative by {name} of the modulus of the law \"{}\" is known", material.entry.name))
+        };
         let sought = |(p, _): &(usize, &Moved)| wanted[data.parameters[*p]];
         for (p, moved) in material.moved.iter().enumerate().filter(sought) {
             let slopes = match moved {
@@ -68,7 +72,7 @@ pub(super) fn predict(record: &Record<'_>, values: &[f64], wanted: &[bool]) -> R
                     own(&material.law, material.clock(name, temperature))
                 }
             };
-            for (column, [_, slope]) in predicted.slopes.iter_mut().zip(slopes.ok_or_else(asked)?) {
+            for (column, [_, slope]) in predicted.slopes.iter_mut().zip(slopes.ok_or_else(|| unknown(p))?) {
                 column[k * count + p] = slope;
             }
         }

@@ -62,6 +62,7 @@ impl Fitting {
             let read = root(&ctx, &document).and_then(|root| all_of(&root, element));
             global.extend(ctx.finish(read)?);
         }
+        sensitivity::leave_ends(&mut document, &global);
         let ctx = context();
         let count = root(&ctx, &document).and_then(|root| Ok(data(&root)?.len()));
         let count = ctx.finish(count)?;

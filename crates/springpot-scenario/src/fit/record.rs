@@ -286,7 +286,12 @@ impl<'a> Record<'a> {
         let loss = table.get("loss");
         let huber = match &loss {
             Some(field) if field.node.entries().is_some() => Some(field.table(&HUBER)?.number("huber")?),
-            Some(field) => field.word("loss").map(|_| None)?,
+            Some(field) if field.node.text() == Some("squares") => None,
+            Some(field) => {
+                let message = format!("is {}, which is no loss", field.node.written());
+                let help = "write \"squares\", or { huber = 1.345 } against outliers".to_owned();
+                return Err(field.refuse(RefusalKind::UnknownName, message, Some(help)));
+            }
             None => None,
         };
         let optional = |key: &'static str| -> Read<Option<f64>> {
@@ -416,7 +421,15 @@ impl<'a> Record<'a> {
         };
         let [from, to] = [from.number("s")?, to.number("s")?];
         let keep: Vec<bool> = plan.at.iter().map(|t| (from..=to).contains(t)).collect();
-        if from >= to || !keep.contains(&true) {
+        if from >= to {
+            let message = format!("runs from {from} s to {to} s, which is not forwards");
+            return Err(field.refuse(
+                RefusalKind::OutOfRange,
+                message,
+                Some("write the earlier time first".to_owned()),
+            ));
+        }
+        if !keep.contains(&true) {
             let message = format!("runs from {from} s to {to} s, where there is no row");
             let help = format!("the rows go from {} s to {} s", plan.at[0], plan.at[plan.at.len() - 1]);
             return Err(field.refuse(RefusalKind::OutOfRange, message, Some(help)));

@@ -1,9 +1,13 @@
 //! `[design]`: what `springpot design` moves the parameters for.
 
+use crate::cases::root;
 use crate::keys::{CONSTRAINT, DESIGN};
 use crate::plan::Plan;
-use crate::reader::{Field, Read, Table, all};
+use crate::reader::files::{CsvCache, UrdfCache};
+use crate::reader::{Context, Field, Read, Table, all};
 use crate::scenario::Scenario;
+use crate::scenario::root::SCENARIO;
+use crate::sensitivity;
 use crate::text::document::shorten;
 use crate::text::names;
 use crate::text::refusal::{Place, RefusalKind, Refusals};
@@ -59,6 +63,13 @@ impl Scenario {
             return Err(missing("[[parameter]]", help));
         }
         let mut scenario = self.clone();
+        let (tables, robots) = (CsvCache::default(), UrdfCache::default());
+        let ctx = Context::new(catalog, &self.folder, &tables, &robots).of_whole(&SCENARIO);
+        let blocks = root(&ctx, document).and_then(|root| match root.get("parameter") {
+            Some(field) => sensitivity::blocks(&root, &field),
+            None => Ok(Vec::new()),
+        });
+        sensitivity::leave_ends(&mut scenario.document, &ctx.finish(blocks)?);
         scenario.sensitivity.clear();
         if document.get("sensitivity").is_some_and(|table| table.get("by").is_some()) {
             scenario.set_anew("sensitivity.by=")?;

@@ -11,6 +11,7 @@ use crate::text::document::{Node, Value, shorten};
 use crate::text::names;
 use crate::text::refusal::{Place, RefusalKind};
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// By what is differentiated, and what.
 #[derive(Debug, Clone, Default)]
@@ -72,13 +73,15 @@ pub(crate) fn read(root: &Table<'_>, axes: &[Axis], more: &[More]) -> Read<Optio
     let more = more.iter().map(|more| one(ctx, root.node, &blocks, &more.written, &more.place));
     asked.by.extend(all(more.collect::<Vec<_>>())?);
     if asked.is_asked && asked.by.is_empty() {
+        // What a command adds to the file is no place to look at.
+        let is_of_file = |place: &Place| Arc::ptr_eq(&place.source, &root.node.place.source);
         let place = written.map_or_else(
-            || root.get("sensitivity").map(|field| field.node.place.clone()),
+            || root.get("sensitivity").map(|field| field.node.place.clone()).filter(is_of_file),
             |field| Some(field.node.place.clone()),
         );
         let message = "[sensitivity] has no parameter: nothing says by what is differentiated";
         let refusal = place.as_ref().unwrap_or(&root.node.place).refuse(RefusalKind::Missing, message);
-        let help = "write by = [\"element.NAME.PARAMETER\"], or a [[parameter]] with such a path";
+        let help = "write a [[parameter]] with such a path as \"element.NAME.PARAMETER\", by = [\"PATH\"], or --by PATH on the command line";
         return Err(ctx.refuse(refusal.help(help)));
     }
     apart(ctx, &asked.by)?;

@@ -200,3 +200,30 @@ fn differ(by: &By, (target, other): (&Target, &(f64, String)), first: &(f64, Str
     let help = format!("write {value} in both places, or let each follow from a constant, and take that as the path");
     target.place.refuse(RefusalKind::Rule, message).help(help)
 }
+
+/// Puts the first `start` of a parameter in place of an order that is 0 or 1, where nothing can be differentiated: a search begins there in any case.
+pub(crate) fn leave_ends(document: &mut Node, by: &[By]) {
+    for own in by {
+        let block = own.block.and_then(|k| document.get("parameter")?.items()?.get(k).cloned());
+        let start = block.as_ref().and_then(|block| block.get("start"));
+        let first =
+            start.and_then(|start| start.items().map_or(Some(&**start), |items| items.first().map(|one| &**one)));
+        let Some(first) = first.cloned() else { continue };
+        for target in own.targets.iter().filter(|target| is_order(target)) {
+            let is_end = |node: &Node| match &node.value {
+                Value::Number { value, .. } => *value == 0.0 || *value == 1.0,
+                _ => false,
+            };
+            if path::get(document, target).is_some_and(is_end) {
+                path::set(document, target, first.clone());
+            }
+        }
+    }
+}
+
+/// Whether an order stands at a path.
+fn is_order(target: &Target) -> bool {
+    let key = target.ends().1;
+    let of_controller = ["motion.controller.lambda", "motion.controller.mu"];
+    key == "alpha" || key.starts_with("alpha_") || of_controller.iter().any(|path| target.written.starts_with(path))
+}

@@ -13,4 +13,4 @@ pub(crate) use asked::{Asked, By, apart, blocks, read};
 pub(crate) use constants::{followers, slopes};
 pub(crate) use gather::Slope;
 pub(crate) use judge::{block_of, judge, refuse_unknown};
-pub(crate) use mark::mark;
+pub(crate) use mark::{leave_ends, mark};

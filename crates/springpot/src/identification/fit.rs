@@ -243,8 +243,26 @@ pub fn best(
         }
     }
     let look = Look { problem, scales: &scales, rows: count, stop };
-    summary(&look, at, [reached.len(), agreeing])
-        .ok_or_else(|| FitError::Unstartable("the minimum has no derivatives".into()))
+    let values = look.values(&at.places);
+    summary(&look, at, [reached.len(), agreeing]).ok_or_else(|| undifferentiable("the minimum", problem, &values))
+}
+
+/// Says by which parameters there are no derivatives at these values.
+fn undifferentiable(of: &str, problem: &dyn Problem, values: &[f64]) -> FitError {
+    let (parameters, n) = (problem.parameters(), values.len());
+    let mut is_missing = vec![false; n];
+    let told = problem.rows(values, &vec![true; n], &mut |rows| {
+        for line in rows.jacobian.chunks(n) {
+            is_missing.iter_mut().zip(line).for_each(|(missing, slope)| *missing |= !slope.is_finite());
+        }
+    });
+    let each = parameters.iter().zip(values).zip(is_missing).filter(|(_, missing)| *missing);
+    let named: Vec<String> = each.map(|((own, value), _)| format!("{} = {value}", own.name)).collect();
+    FitError::Unstartable(match told {
+        Err(failed) => format!("{of} has no derivatives: {failed}"),
+        Ok(()) if named.is_empty() => format!("{of} has no derivatives that are finite numbers"),
+        Ok(()) => format!("{of} has no derivative by {}", named.join(" and ")),
+    })
 }
 
 /// What rows say of the parameters at the first start, as if the least cost were there.
@@ -259,7 +277,7 @@ pub fn at_start(problem: &dyn Problem, settings: &Settings, stop: &AtomicBool) -
     let scales = vec![f64::INFINITY; problem.series().len()];
     let unstartable = || {
         let told = problem.rows(&start, &vec![false; start.len()], &mut |_| {}).err();
-        FitError::Unstartable(told.map_or("a derivative is not a finite number".into(), |error| error.0))
+        told.map_or_else(|| undifferentiable("the start", problem, &start), |error| FitError::Unstartable(error.0))
     };
     let look = Look { problem, scales: &scales, rows: 0, stop };
     let count = Residuals::new(&look, &start).ok_or_else(unstartable)?.count();

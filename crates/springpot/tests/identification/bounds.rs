@@ -2,7 +2,7 @@
 
 use crate::support::{Curve, Noise};
 use springpot::identification::{
-    Failed, Parameter, Prior, Problem, Rows, Scale, Series, Settings, Side, Status, fit, profile,
+    Failed, Parameter, Prior, Problem, Rows, Scale, Series, Settings, Side, Status, at_start, fit, profile,
 };
 use std::sync::atomic::AtomicBool;
 
@@ -176,4 +176,29 @@ fn a_trial_that_fails_is_a_longer_cost() {
     assert!((found.values[0] - 1.15 * 1.15).abs() < 1e-10, "{:?}", found.values);
     let error = fit(&root(0.5), &ONCE, &AtomicBool::new(false)).unwrap_err();
     assert_eq!(error.to_string(), "no start can be evaluated: p = 0.5");
+}
+
+/// Nothing is known of what `b` changes.
+struct Blind([Parameter; 2], [Series; 1]);
+
+impl Problem for Blind {
+    fn parameters(&self) -> &[Parameter] {
+        &self.0
+    }
+    fn series(&self) -> &[Series] {
+        &self.1
+    }
+    fn rows(&self, p: &[f64], _: &[bool], take: &mut dyn FnMut(Rows<'_>)) -> Result<(), Failed> {
+        take(Rows { series: 0, residuals: &[p[0], p[1], 1.0], jacobian: &[1.0, 0.0, 0.0, f64::NAN, 0.0, 0.0] });
+        Ok(())
+    }
+}
+
+#[test]
+fn what_has_no_derivative_is_named() {
+    let blind = Blind([Parameter::free("a", 1.0), Parameter::free("b", 2.0)], [Series::new("r")]);
+    let stop = AtomicBool::new(false);
+    for error in [fit(&blind, &ONCE, &stop).unwrap_err(), at_start(&blind, &ONCE, &stop).unwrap_err()] {
+        assert!(error.to_string().ends_with(" has no derivative by b = 2"), "{error}");
+    }
 }
