@@ -145,9 +145,13 @@ static RULE: LazyLock<[[f64; 2]; POINTS]> = LazyLock::new(|| {
 
 /// That of a law that is driven until it is steady; `None` where it does not become so.
 pub(super) fn driven(law: &Network, sine: &Sine) -> Option<Complex64> {
-    let (mut found, mut apart) = (limit(&mut Turns::begin(law, *sine, STEPS[0])?)?, f64::INFINITY);
-    for steps in &STEPS[1..] {
-        let finer = limit(&mut Turns::begin(law, *sine, *steps)?)?;
+    let mut turns = Turns::begin(law, *sine, STEPS[0])?;
+    let (mut found, mut apart) = (limit(&mut turns)?, f64::INFINITY);
+    for &steps in &STEPS[1..] {
+        // What remembers nothing but its state goes on where coarser steps have brought it.
+        let goes_on = turns.state.memories().is_empty();
+        turns = if goes_on { Turns { steps, ..turns } } else { Turns::begin(law, *sine, steps)? };
+        let finer = limit(&mut turns)?;
         (found, apart) = (finer, (finer - found).norm() / finer.norm());
         if apart <= ALIKE {
             return Some(found);

@@ -6,6 +6,8 @@ use springpot::system::Stop;
 use springpot::table::Column;
 use springpot_run::trial::{Varied, rows};
 use springpot_scenario::Plan;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 /// What a derivative may differ by, of its largest value.
 const CLOSE: f64 = 1e-5;
@@ -63,9 +65,11 @@ impl Compared {
 pub(super) fn compare(varied: &Varied<'_>, plan: &Plan, stop: &Stop) -> Result<Vec<Compared>, Untold> {
     let columns = plan.system_at_start().columns();
     let names: Vec<String> = columns.iter().map(|column| column.name.clone()).collect();
-    let (told, _) = rows(plan, stop)?;
-    let (exact, _) = rows(&tight(plan.clone()), stop)?;
-    let noise = noise((&columns, &told, &exact), plan, stop)?;
+    let mut finer = tight(plan.clone());
+    finer.settings.rtol *= FINER;
+    let mut runs = side_by_side(vec![plan.clone(), tight(plan.clone()), finer], stop)?.into_iter();
+    let [told, exact, finer] = std::array::from_fn(|_| runs.next().unwrap_or_default());
+    let noise = noise(&columns, [&told, &exact, &finer]);
     let values: Vec<f64> = varied.parameters.iter().map(|parameter| parameter.value).collect();
     let each = varied.parameters.iter().enumerate().map(|(p, parameter)| {
         let size = parameter.typical;
@@ -86,8 +90,7 @@ pub(super) fn compare(varied: &Varied<'_>, plan: &Plan, stop: &Stop) -> Result<V
                         continue;
                     }
                 };
-                let runs = plans.into_iter().map(|plan| Ok(rows(&tight(plan), stop)?.0));
-                let runs = runs.collect::<Result<Vec<_>, Untold>>()?;
+                let runs = side_by_side(plans.into_iter().map(tight).collect(), stop)?;
                 let found = one((&names, &noise), [&told, &exact], &runs, (at, weights), (&parameter.name, step, size));
                 let is_close = found.is_close();
                 best = Some(best.filter(|best| best.off <= found.off).unwrap_or(found));
@@ -113,15 +116,8 @@ struct Noise {
     of_column: f64,
 }
 
-/// Column by column, of a run that has the rows `told`.
-fn noise(
-    (columns, told, tight): (&[Column], &[Vec<f64>], &[Vec<f64>]),
-    plan: &Plan,
-    stop: &Stop,
-) -> Result<Vec<Noise>, Untold> {
-    let mut finer = self::tight(plan.clone());
-    finer.settings.rtol *= FINER;
-    let (finer, _) = rows(&finer, stop)?;
+/// Column by column, of a run that has the rows `told`, beside one that is as exact as differences need it, and a still finer one.
+fn noise(columns: &[Column], [told, tight, finer]: [&[Vec<f64>]; 3]) -> Vec<Noise> {
     let off = |k: usize, rows: &[Vec<f64>], others: &[Vec<f64>]| {
         rows.iter().zip(others).map(|(one, other)| (one[k] - other[k]).abs()).fold(0.0, f64::max)
     };
@@ -132,9 +128,27 @@ fn noise(
         let alike = columns.iter().zip(&sizes).filter(|(column, _)| column.unit == columns[k].unit);
         let largest = alike.map(|(_, size)| *size).fold(0.0, f64::max);
         let of_column = if sizes[k] > 0.0 { off(k, told, tight) / sizes[k] } else { 0.0 };
-        Noise { of_differences: off(k, tight, &finer).max(4.0 * f64::EPSILON * largest), of_column }
+        Noise { of_differences: off(k, tight, finer).max(4.0 * f64::EPSILON * largest), of_column }
     };
-    Ok((0..count).map(one).collect())
+    (0..count).map(one).collect()
+}
+
+/// The rows of runs that go on all cores at once.
+fn side_by_side(plans: Vec<Plan>, stop: &Stop) -> Result<Vec<Vec<Vec<f64>>>, Untold> {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let (next, found) = (AtomicUsize::new(0), Mutex::new(plans.iter().map(|_| None).collect::<Vec<_>>()));
+    let work = || {
+        while let Some((k, plan)) = Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|k| Some((k, plans.get(k)?))) {
+            let ran = rows(plan, stop);
+            found.lock().unwrap_or_else(PoisonError::into_inner)[k] = Some(ran);
+        }
+    };
+    std::thread::scope(|scope| {
+        (1..cores.min(plans.len())).for_each(|_| drop(scope.spawn(work)));
+        work();
+    });
+    let found = found.into_inner().unwrap_or_else(PoisonError::into_inner);
+    found.into_iter().flatten().map(|ran| Ok(ran?.0)).collect()
 }
 
 /// The run without derivatives, as exact as differences need it.
