@@ -87,9 +87,8 @@ impl Losses {
 
 /// Whether a column is the derivative of a work, whose flow may be unknown where the motion is not.
 fn is_of_work(name: &str) -> bool {
-    Quantity::of_derivative(name).is_some_and(|(of, _)| {
-        matches!(of, "energy.actuators" | "energy.joints") || of.ends_with(".input") || of.ends_with(".dissipated")
-    })
+    let of = Quantity::of_derivative(name).and_then(|(of, _)| Quantity::read(of));
+    of.is_some_and(|of| of.is_work())
 }
 
 /// What metrics and their gradients are worked out of.

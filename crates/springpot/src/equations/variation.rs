@@ -389,7 +389,7 @@ impl Variation {
                 let [stored, derivative] = &mut spare;
                 let mut sum = ObservationVariation { force, stored, derivative, told: &mut told, leaves: None };
                 let told = at_start(count, [stroke, rate], inputs);
-                equations.bank.vary_now(e, &equations.bank.point(e, 0), &told, law, &mut sum);
+                equations.bank.vary_now(e, (&equations.bank.point(e, 0), false), &told, law, &mut sum);
             }
             let mut right = vec![0.0; free.len() * count];
             for (sum, &row) in right.chunks_exact_mut(count).zip(&free) {

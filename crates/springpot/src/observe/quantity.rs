@@ -123,6 +123,17 @@ impl EnergyQuantity {
     }
 }
 
+impl<Id> Quantity<Id> {
+    /// Whether it is a work since t = 0: dissipated, supplied, done by actuators or lost in joints.
+    pub const fn is_work(&self) -> bool {
+        matches!(
+            self,
+            Self::Element(_, ElementQuantity::Dissipated | ElementQuantity::Input)
+                | Self::Energy(EnergyQuantity::Actuators | EnergyQuantity::Joints)
+        )
+    }
+}
+
 impl Quantity {
     /// What must be known for its value.
     pub(crate) const fn needs(self) -> Needs {

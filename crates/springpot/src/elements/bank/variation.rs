@@ -118,33 +118,18 @@ impl ElementBank {
         }
     }
 
-    /// As [`Self::vary_now`], at t = 0 in the state there.
-    pub(crate) fn vary_row(
-        &self,
-        e: usize,
-        at: &Point,
-        by: &PointVariation,
-        own: &LawVariation,
-        sum: &mut ObservationVariation,
-    ) {
-        let Banked { law, kept, .. } = &self.elements[e];
-        if let Some(Kept { state, .. }) = kept {
-            law.vary_at((When::Between, at), state.seen_at(at.t), by, own.seen_at(at.t), sum);
-        }
-    }
-
-    /// Adds what changes of element `e` between two steps, where it is told `at`.
+    /// Adds what changes of element `e` between two steps, where it is told `at`; of a row, which is at t = 0 in the state there.
     pub(crate) fn vary_now(
         &self,
         e: usize,
-        at: &Point,
+        (at, is_row): (&Point, bool),
         by: &PointVariation,
         own: &LawVariation,
         sum: &mut ObservationVariation,
     ) {
         let Banked { law, kept, .. } = &self.elements[e];
-        if let Some(Kept { state, .. }) = kept {
-            law.vary_at((When::Between, at), state, by, own, sum);
-        }
+        let Some(Kept { state, .. }) = kept else { return };
+        let (state, own) = if is_row { (state.seen_at(at.t), own.seen_at(at.t)) } else { (state, own) };
+        law.vary_at((When::Between, at), state, by, own, sum);
     }
 }

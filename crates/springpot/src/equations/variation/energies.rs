@@ -136,7 +136,7 @@ impl Variation {
             let at = at_start(count, [&element.stroke, &element.rate], &element.inputs);
             let (force, derivative, told) = (&mut force, &mut derivative, &mut told);
             let mut sum = ObservationVariation { force, stored: &mut origin, derivative, told, leaves: None };
-            equations.bank.vary_now(e, &equations.bank.point(e, 0), &at, &element.law, &mut sum);
+            equations.bank.vary_now(e, (&equations.bank.point(e, 0), false), &at, &element.law, &mut sum);
         }
         self.works.done.origin = origin;
     }

@@ -97,7 +97,7 @@ impl Variation {
         let told = own.told(count, i, theta);
         match theta {
             Some(theta) => equations.bank.vary_at(e, (theta, at), &told, &own.law, &mut sum),
-            None => equations.bank.vary_row(e, at, &told, &own.law, &mut sum),
+            None => equations.bank.vary_now(e, (at, true), &told, &own.law, &mut sum),
         }
         if self.singular.is_there {
             let [change, ..] = self.singular_at(equations, (e, i), at.t, at);

@@ -5,7 +5,7 @@ use crate::equations::assembly::Equations;
 use crate::fractional::PortColumns;
 use crate::law::{Derivative, Network};
 use crate::model::FrictionLaw;
-use crate::observe::{ElementQuantity, EnergyQuantity, Quantity};
+use crate::observe::{ElementQuantity, Quantity};
 use crate::system::sensitivity::{Parameter, Seed, Sensitivity};
 use crate::system::{Action, Motion, System};
 use std::sync::Arc;
@@ -93,11 +93,7 @@ impl Columns {
 
 /// Whether rows ask for works.
 pub(in crate::equations::variation) fn keeps_works(quantities: &[Quantity]) -> bool {
-    quantities.iter().any(|of| match of {
-        Quantity::Element(_, of) => matches!(of, ElementQuantity::Dissipated | ElementQuantity::Input),
-        Quantity::Energy(of) => matches!(of, EnergyQuantity::Actuators | EnergyQuantity::Joints),
-        _ => false,
-    })
+    quantities.iter().any(Quantity::is_work)
 }
 
 /// Whether its losses warm it.
