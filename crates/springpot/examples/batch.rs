@@ -1,6 +1,6 @@
 //! Inverse dynamics of many states of a robot on all cores, as springpot-py does them: `cargo run --release --example batch -- ROBOT.urdf [N]`.
 
-use springpot::dynamics::{Workspace, rnea_into};
+use springpot::dynamics::batch::{self, BatchWorkspace};
 use springpot::model::urdf::{Urdf, UrdfOptions};
 use std::path::Path;
 use std::time::Instant;
@@ -21,14 +21,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let mut tau = vec![0.0; count * nv];
         std::thread::scope(|scope| {
             for (part, tau) in tau.chunks_mut(rows * nv).enumerate() {
-                let (model, q, v, a) = (&model, &q, &v, &a);
+                let (model, from, states) = (&model, part * rows, tau.len() / nv);
+                let q = &q[from * nq..][..states * nq];
+                let [v, a] = [&v, &a].map(|all| &all[from * nv..][..states * nv]);
                 scope.spawn(move || {
-                    let mut workspace = Workspace::new(model);
-                    for (k, tau) in tau.chunks_mut(nv).enumerate() {
-                        let row = part * rows + k;
-                        let [v, a] = [v, a].map(|all| &all[row * nv..(row + 1) * nv]);
-                        rnea_into(model, &q[row * nq..(row + 1) * nq], v, a, &[], &mut workspace, tau);
-                    }
+                    let mut workspace = BatchWorkspace::new(model).expect("a level that this processor has");
+                    batch::rnea_into(model, &mut workspace, q, v, a, tau).expect("finite states");
                 });
             }
         });

@@ -17,6 +17,7 @@ use crate::spatial::{ArticulatedInertia, Force, Inertia, Motion, Scalar, Vec3};
 /// [`add_wrench`](super::add_wrench). A pair of length 0 gives NaN, and so does a configuration in which the mass matrix is
 /// singular. Source: Featherstone, Rigid Body Dynamics Algorithms, 2008, table 7.1; here in world axes about each link's own
 /// origin, so that no inertia is turned twice and distal bodies keep their digits.
+#[inline(always)]
 pub fn aba_into<T: Scalar>(
     model: &Model,
     kinematics: &Kinematics<T>,
@@ -44,7 +45,7 @@ pub fn aba_into<T: Scalar>(
         bias[j] = joint::bias(model, j, link, velocity, v);
     }
     for pair in pairs {
-        let pull = pair::pull(pair, |site| kinematics.position(site));
+        let pull = pair::pull(pair, kinematics.position(&pair.from), kinematics.position(&pair.to));
         force[pair.from.link()] -= Force::at_point(pull, kinematics.arm(&pair.from));
         force[pair.to.link()] += Force::at_point(pull, kinematics.arm(&pair.to));
     }
@@ -85,6 +86,7 @@ pub fn aba_into<T: Scalar>(
 
 /// Where joints follow one another, the forces of several branches meet in one coordinate: M a = τ − (C v + g − ΣQ), with M
 /// factorised.
+#[inline(always)]
 fn coupled<T: Scalar>(
     model: &Model,
     kinematics: &Kinematics<T>,
@@ -103,7 +105,7 @@ fn coupled<T: Scalar>(
         workspace.force[model.parent_link(j)] += load;
     }
     for pair in pairs {
-        let pull = pair::pull(pair, |site| kinematics.position(site));
+        let pull = pair::pull(pair, kinematics.position(&pair.from), kinematics.position(&pair.to));
         for (site, force) in [(&pair.from, pull), (&pair.to, -pull)] {
             add_wrench(model, kinematics, site, Force { linear: force, angular: Vec3::ZERO }, a);
         }

@@ -44,6 +44,7 @@ impl<T: Scalar> AbaDerivatives<T> {
 /// ∂a/∂q = −M⁻¹ ∂RNEA/∂q and ∂a/∂v = −M⁻¹ ∂RNEA/∂v at that a, and ∂a/∂τ = M⁻¹; M is factorised along the tree. NaN where M
 /// is singular or a pair has length 0. Source: Carpentier and Mansard, Analytical derivatives of rigid body dynamics
 /// algorithms, RSS 2018.
+#[inline(always)]
 pub fn aba_derivatives_into<T: Scalar>(
     model: &Model,
     kinematics: &Kinematics<T>,

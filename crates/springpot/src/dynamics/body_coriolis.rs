@@ -19,12 +19,14 @@ impl<T: Scalar> BodyCoriolis<T> {
     /// Of a body with `inertia` about the reference point that moves with `velocity`, and whose momentum is `momentum`.
     ///
     /// S = u hᵀ + \[ω\]× Π with the second moments Π = ∫ r rᵀ dm.
-    #[inline]
+    #[inline(always)]
     pub(super) fn new(inertia: &Inertia<T>, velocity: Motion<T>, momentum: Force<T>) -> Self {
         let Symmetric3 { xx, yy, zz, xy, xz, yz } = inertia.rotational.second_moments();
         let (omega, h) = (velocity.angular, inertia.first_moment);
-        let column = |c: usize, pi: Vec3<T>| velocity.linear.times_plus(h.0[c], omega.cross(pi)).0;
-        let (x, y, z) = (column(0, Vec3([xx, xy, xz])), column(1, Vec3([xy, yy, yz])), column(2, Vec3([xz, yz, zz])));
+        let (u, [hx, hy, hz]) = (velocity.linear, h.0);
+        let x = u.times_plus(hx, omega.cross(Vec3([xx, xy, xz]))).0;
+        let y = u.times_plus(hy, omega.cross(Vec3([xy, yy, yz]))).0;
+        let z = u.times_plus(hz, omega.cross(Vec3([xz, yz, zz]))).0;
         let rows = [
             Vec3([-(y[1] + z[2]), y[0], z[0]]),
             Vec3([x[1], -(x[0] + z[2]), z[1]]),
@@ -34,7 +36,7 @@ impl<T: Scalar> BodyCoriolis<T> {
     }
 
     /// B (α, β), which β does not change.
-    #[inline]
+    #[inline(always)]
     pub(super) fn times(&self, alpha: Vec3<T>) -> Force<T> {
         let [r0, r1, r2] = self.rows;
         let angular = -Vec3([r0.dot(alpha), r1.dot(alpha), r2.dot(alpha)]);
@@ -42,7 +44,7 @@ impl<T: Scalar> BodyCoriolis<T> {
     }
 
     /// The angular part of Bᵀ (η, φ); the linear part is 0.
-    #[inline]
+    #[inline(always)]
     pub(super) fn transposed_times(&self, motion: Motion<T>) -> Vec3<T> {
         let ([x, y, z], [r0, r1, r2]) = (motion.angular.0, self.rows);
         self.momentum.cross(motion.linear) - r2.times_plus(z, r1.times_plus(y, r0 * x))
@@ -50,11 +52,10 @@ impl<T: Scalar> BodyCoriolis<T> {
 }
 
 impl<T: Scalar> std::ops::AddAssign for BodyCoriolis<T> {
-    #[inline]
+    #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         self.momentum += other.momentum;
-        for (row, o) in self.rows.iter_mut().zip(other.rows) {
-            *row += o;
-        }
+        let ([a0, a1, a2], [b0, b1, b2]) = (self.rows, other.rows);
+        self.rows = [a0 + b0, a1 + b1, a2 + b2];
     }
 }

@@ -5,6 +5,8 @@ use super::kinematics::Kinematics;
 use super::workspace::Workspace;
 use crate::model::Model;
 use crate::spatial::Scalar;
+use crate::spatial::columns::{ColumnWork, Columns};
+use std::ops::Range;
 
 /// Factors M = Lᵀ D L in place: L, unit lower triangular, is 0 wherever neither of two joints carries the other, so that
 /// branches cause no fill-in.
@@ -13,6 +15,7 @@ use crate::spatial::Scalar;
 /// it was. O(n d²) operations (d: depth of the tree). D_j is the inertia that joint j feels when all joints beyond it are
 /// free; where the mass matrix is singular, infinities and NaN follow. Source: Featherstone, Rigid Body Dynamics Algorithms,
 /// 2008, §6.5.
+#[inline(always)]
 pub fn cholesky_into<T: Scalar>(model: &Model, mass: &mut [T]) {
     let n = model.nv();
     assert_eq!(mass.len(), n * n, "the mass matrix is nv x nv");
@@ -32,67 +35,50 @@ pub fn cholesky_into<T: Scalar>(model: &Model, mass: &mut [T]) {
 }
 
 /// Solves M x = y, with the factors of [`cholesky_into`], in place: `x` (nv) holds y before and the solution after.
+#[inline(always)]
 pub fn cholesky_solve_into<T: Scalar>(model: &Model, factor: &[T], x: &mut [T]) {
-    solve_rows(model, factor, 1, x);
+    let n = model.nv();
+    assert_eq!(factor.len(), n * n, "the factors are nv x nv");
+    assert_eq!(x.len(), n, "the right-hand side is nv");
+    for k in (0..n).rev() {
+        let own = x[k];
+        for j in pivots(model, model.pivot(k)) {
+            x[j] -= factor[k * n + j] * own;
+        }
+        x[k] = own * (T::ONE / factor[k * n + k]);
+    }
+    for k in 0..n {
+        let mut own = x[k];
+        for j in pivots(model, model.pivot(k)) {
+            own -= factor[k * n + j] * x[j];
+        }
+        x[k] = own;
+    }
 }
 
 /// Solves M X = Y for the columns of an nv × nv matrix, in place.
+#[inline(always)]
 pub(super) fn solve_matrix<T: Scalar>(model: &Model, factor: &[T], x: &mut [T]) {
-    solve_rows(model, factor, model.nv(), x);
-}
-
-fn solve_rows<T: Scalar>(model: &Model, factor: &[T], width: usize, x: &mut [T]) {
     let n = model.nv();
     assert_eq!(factor.len(), n * n, "the factors are nv x nv");
-    assert_eq!(x.len(), n * width, "the right-hand side has nv rows");
-    for k in (0..n).rev() {
-        let (before, rest) = x.split_at_mut(k * width);
-        let row = &mut rest[..width];
-        for j in pivots(model, model.pivot(k)) {
-            subtract(&mut before[j * width..][..width], factor[k * n + j], row);
-        }
-        let inverse = T::ONE / factor[k * n + k];
-        for entry in row {
-            *entry = *entry * inverse;
-        }
-    }
-    for k in 0..n {
-        let (before, rest) = x.split_at_mut(k * width);
-        let row = &mut rest[..width];
-        for j in pivots(model, model.pivot(k)) {
-            subtract(row, factor[k * n + j], &before[j * width..][..width]);
-        }
-    }
+    assert_eq!(x.len(), n * n, "the right-hand side is nv x nv");
+    T::in_columns(Sweeps { model, factor, rows: x, is_inverse: false });
 }
 
 /// The inverse M⁻¹ from the factors of [`cholesky_into`]: symmetric, both triangles written, nv × nv, row-major.
 ///
 /// Only the upper triangle is computed: L⁻ᵀ has no lower one, and row k of M⁻¹ = L⁻¹ (D⁻¹ L⁻ᵀ) needs from the rows above it
 /// the columns from k on.
+#[inline(always)]
 pub fn inverse_from_cholesky_into<T: Scalar>(model: &Model, factor: &[T], inverse: &mut [T]) {
     let n = model.nv();
     assert_eq!(factor.len(), n * n, "the factors are nv x nv");
     assert_eq!(inverse.len(), n * n, "the inverse is nv x nv");
     inverse.fill(T::ZERO);
-    for k in (0..n).rev() {
-        let (before, rest) = inverse.split_at_mut(k * n);
-        let row = &mut rest[k..n];
-        row[0] = T::ONE;
-        for j in pivots(model, model.pivot(k)) {
-            subtract(&mut before[j * n + k..][..n - k], factor[k * n + j], row);
-        }
-        let pivot = T::ONE / factor[k * n + k];
-        for entry in row {
-            *entry = *entry * pivot;
-        }
-    }
     for k in 0..n {
-        let (before, rest) = inverse.split_at_mut(k * n);
-        let row = &mut rest[k..n];
-        for j in pivots(model, model.pivot(k)) {
-            subtract(row, factor[k * n + j], &before[j * n + k..][..n - k]);
-        }
+        inverse[k * n + k] = T::ONE;
     }
+    T::in_columns(Sweeps { model, factor, rows: inverse, is_inverse: true });
     for k in 1..n {
         for j in 0..k {
             inverse[k * n + j] = inverse[j * n + k];
@@ -100,9 +86,101 @@ pub fn inverse_from_cholesky_into<T: Scalar>(model: &Model, factor: &[T], invers
     }
 }
 
+/// Rows of X with M X = Y for Y in their place: L⁻ᵀ from the tips inwards, then L⁻¹ D⁻¹ outwards. Every row is gathered from those that it
+/// needs, which all are final, while it stays in registers, and written once.
+struct Sweeps<'a, T> {
+    model: &'a Model,
+    factor: &'a [T],
+    rows: &'a mut [T],
+    /// Y = 1, of which the upper triangle of X is asked for.
+    is_inverse: bool,
+}
+
+impl<T: Scalar> ColumnWork<T> for Sweeps<'_, T> {
+    #[inline(always)]
+    fn run<C: Columns<T>>(self) {
+        let Self { model, factor, rows, is_inverse } = self;
+        let n = model.nv();
+        for j in (0..n).rev() {
+            let below = model.subtree_end(j);
+            // Row j of L⁻ᵀ has nothing but the columns of what j carries.
+            let columns = if is_inverse { j..below } else { 0..n };
+            gather::<T, C>(rows, (n, j), columns, None, model.carried(j), (factor, j, n));
+        }
+        for k in 0..n {
+            let columns = if is_inverse { k..n } else { 0..n };
+            let inverse = T::ONE / factor[k * n + k];
+            gather::<T, C>(rows, (n, k), columns, Some(inverse), pivots(model, model.pivot(k)), (factor, k * n, 1));
+        }
+    }
+}
+
+/// row = row · scale − Σ_k factor_k row_k in some `columns`, the factors at `start + k · step`.
+#[inline(always)]
+fn gather<T: Scalar, C: Columns<T>>(
+    rows: &mut [T],
+    (n, row): (usize, usize),
+    columns: Range<usize>,
+    scale: Option<T>,
+    terms: impl Iterator<Item = usize> + Clone,
+    factors: (&[T], usize, usize),
+) {
+    let mut from = columns.start;
+    while from < columns.end {
+        let left = columns.end - from;
+        let registers = left.div_ceil(C::WIDTH).min(4);
+        let block = from..from + left.min(registers * C::WIDTH);
+        from = block.end;
+        match registers {
+            1 => gather_block::<T, C, 1>(rows, (n, row), block, scale, terms.clone(), factors),
+            2 => gather_block::<T, C, 2>(rows, (n, row), block, scale, terms.clone(), factors),
+            3 => gather_block::<T, C, 3>(rows, (n, row), block, scale, terms.clone(), factors),
+            _ => gather_block::<T, C, 4>(rows, (n, row), block, scale, terms.clone(), factors),
+        }
+    }
+}
+
+/// [`gather`] in as many columns as `B` registers hold, the last of them perhaps not full.
+#[inline(always)]
+fn gather_block<T: Scalar, C: Columns<T>, const B: usize>(
+    rows: &mut [T],
+    (n, row): (usize, usize),
+    columns: Range<usize>,
+    scale: Option<T>,
+    terms: impl Iterator<Item = usize>,
+    (factor, start, step): (&[T], usize, usize),
+) {
+    let full = (B - 1) * C::WIDTH;
+    let mut sums = [C::splat(T::ZERO); B];
+    let own = &mut rows[row * n..][columns.clone()];
+    for b in 0..B - 1 {
+        sums[b] = C::load(&own[b * C::WIDTH..]);
+    }
+    sums[B - 1] = C::load_some(&own[full..]);
+    if let Some(scale) = scale {
+        let scale = C::splat(scale);
+        for b in 0..B {
+            sums[b] = sums[b].times(scale);
+        }
+    }
+    for k in terms {
+        let (factor, other) = (C::splat(factor[start + k * step]), &rows[k * n..][columns.clone()]);
+        for b in 0..B - 1 {
+            sums[b] = sums[b].minus_product(factor, C::load(&other[b * C::WIDTH..]));
+        }
+        sums[B - 1] = sums[B - 1].minus_product(factor, C::load_some(&other[full..]));
+    }
+    let own = &mut rows[row * n..][columns];
+    for b in 0..B - 1 {
+        sums[b].store(&mut own[b * C::WIDTH..]);
+    }
+    sums[B - 1].store_some(&mut own[full..]);
+}
+
 /// Inverse of the mass matrix, M(q)⁻¹ = ∂a/∂τ; needs positions.
 ///
 /// `factor` and `inverse` are nv × nv, row-major; `factor` is left with the factors of [`cholesky_into`].
+#[inline(always)]
 pub fn mass_inverse_into<T: Scalar>(
     model: &Model,
     kinematics: &Kinematics<T>,
@@ -124,15 +202,62 @@ pub fn mass_inverse<T: Scalar>(model: &Model, kinematics: &Kinematics<T>) -> Vec
 }
 
 /// The velocities that the elimination touches, from the one before `start` on.
-#[inline]
-fn pivots(model: &Model, start: usize) -> impl Iterator<Item = usize> + '_ {
+#[inline(always)]
+fn pivots(model: &Model, start: usize) -> impl Iterator<Item = usize> + Clone + '_ {
     std::iter::successors(start.checked_sub(1), |&i| model.pivot(i).checked_sub(1))
 }
 
-/// row −= factor · other.
-#[inline]
-fn subtract<T: Scalar>(row: &mut [T], factor: T, other: &[T]) {
-    for (entry, &o) in row.iter_mut().zip(other) {
-        *entry -= factor * o;
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{BodySpec, JointSpec, ModelBuilder, Parent};
+
+    /// Branches; joints in an order that is not depth first.
+    fn tree() -> Model {
+        let mut builder = ModelBuilder::new([0.0, 0.0, -9.81]);
+        for k in 0..23_usize {
+            let joint = JointSpec::revolute(format!("q{k}"), [1.0, 0.3 * k as f64, -0.5], [0.2, -0.1, 0.3]);
+            let body = BodySpec {
+                name: format!("b{k}"),
+                parent: k.checked_sub(2).map_or(Parent::World, Parent::Body),
+                joint,
+                mass: 1.0,
+                com: [0.1, 0.0, 0.0],
+                inertia: [[0.2, 0.0, 0.0], [0.0, 0.2, 0.0], [0.0, 0.0, 0.2]],
+            };
+            builder.push(body).unwrap();
+        }
+        builder.finish().unwrap()
+    }
+
+    #[test]
+    fn columns_have_the_bits_of_one_column() {
+        let model = tree();
+        let (n, q) = (model.nv(), model.random(7));
+        let kinematics = Kinematics::at_position(&model, &q);
+        let (mut factor, mut inverse) = (vec![0.0; n * n], vec![0.0; n * n]);
+        mass_inverse_into(&model, &kinematics, &mut Workspace::new(&model), &mut factor, &mut inverse);
+        let rows: Vec<f64> = (0..n * n).map(|k| (1.0 + 0.7 * k as f64).sin()).collect();
+        let mut solved = rows.clone();
+        solve_matrix(&model, &factor, &mut solved);
+        let mut alone = rows.clone();
+        Sweeps { model: &model, factor: &factor, rows: &mut alone, is_inverse: false }.run::<f64>();
+        assert_eq!(solved, alone);
+        for column in 0..n {
+            let mut x: Vec<f64> = (0..n).map(|row| rows[row * n + column]).collect();
+            cholesky_solve_into(&model, &factor, &mut x);
+            assert!((0..n).all(|row| x[row].to_bits() == solved[row * n + column].to_bits()), "column {column}");
+        }
+        let mut upper = vec![0.0; n * n];
+        (0..n).for_each(|k| upper[k * n + k] = 1.0);
+        Sweeps { model: &model, factor: &factor, rows: &mut upper, is_inverse: true }.run::<f64>();
+        for row in 0..n {
+            assert_eq!(upper[row * n + row..][..n - row], inverse[row * n + row..][..n - row]);
+        }
+        let mass = crate::dynamics::crba(&model, &kinematics);
+        for (row, column) in [(0, 1), (4, 3), (6, 2)] {
+            let product: f64 = (0..n).map(|k| mass[row * n + k] * inverse[k * n + column]).sum();
+            assert!(product.abs() < 1e-11, "{row} {column}: {product}");
+        }
     }
 }

@@ -18,6 +18,7 @@ use crate::spatial::{Motion, Placement, Scalar, Symmetric3, Vec3};
 ///
 /// The integral runs over what both hi and c carry: it is a moment of the composite body of the deeper one, known from its
 /// mass and first and second moments. So O(n d²) operations fill the array (d: depth of the tree), beyond the nv³ zeros.
+#[inline(always)]
 pub fn christoffel_into<T: Scalar>(
     model: &Model,
     kinematics: &Kinematics<T>,
@@ -72,7 +73,7 @@ struct Deeper<T> {
 }
 
 impl<T: Scalar> Deeper<T> {
-    #[inline]
+    #[inline(always)]
     fn new(model: &Model, kinematics: &Kinematics<T>, workspace: &Workspace<T>, k: usize) -> Self {
         let degree = &model.degrees()[k];
         let (link, composite) = (kinematics.link(degree.link), &workspace.composite[degree.link - 1]);
@@ -89,7 +90,7 @@ impl<T: Scalar> Deeper<T> {
     ///
     /// With T_k = v_k + w_k × r, T_h = v_h + w_h × r at this degree's origin and m, H = ∫ r dm, P = ∫ r rᵀ dm, it is
     /// v_k × (m v_h + w_h × H) + (w_k × H) × v_h + P (w_k × w_h).
-    #[inline]
+    #[inline(always)]
     fn moment_against(&self, model: &Model, h: &Degree, link: &Placement<T>) -> Vec3<T> {
         let velocity = joint::point_column(model, h, link, self.origin);
         let spin = joint::angular_column(h, link);

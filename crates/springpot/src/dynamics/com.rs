@@ -10,6 +10,7 @@ use crate::spatial::{Scalar, Vec3};
 /// World position of the centre of mass of all that moves, m; needs positions. Does not allocate.
 ///
 /// Bodies fixed to the world are left out. NaN for a robot without mass (one that has inertia tensors only).
+#[inline(always)]
 pub fn com<T: Scalar>(model: &Model, kinematics: &Kinematics<T>) -> Vec3<T> {
     let (mut first, mut mass) = (Vec3::ZERO, 0.0);
     for j in 0..model.joint_count() {
@@ -25,6 +26,7 @@ pub fn com<T: Scalar>(model: &Model, kinematics: &Kinematics<T>) -> Vec3<T> {
 /// joint b carries. World axes, m/rad or 1.
 ///
 /// `jacobian` is 3 × nv, row-major; needs positions. NaN for a robot without mass.
+#[inline(always)]
 pub fn com_jacobian_into<T: Scalar>(
     model: &Model,
     kinematics: &Kinematics<T>,
@@ -41,8 +43,9 @@ pub fn com_jacobian_into<T: Scalar>(
     jacobian.fill(T::ZERO);
     for degree in model.degrees() {
         let moved = joint::first_moment_column(model, degree, kinematics.link(degree.link), first[degree.link - 1]);
-        for (row, entry) in (moved * inverse).0.into_iter().enumerate() {
-            jacobian[row * n + degree.index] += entry;
+        let column = (moved * inverse).0;
+        for row in 0..3 {
+            jacobian[row * n + degree.index] += column[row];
         }
     }
 }

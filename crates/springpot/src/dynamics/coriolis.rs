@@ -13,6 +13,7 @@ use crate::spatial::Scalar;
 /// C = Σ_i J_iᵀ (I_i J̇_i + B_i J_i) with B_i = ½((v_i×*) I_i − I_i (v_i×) + (I_i v_i)×̄*) and (f×̄*) w = w ×* f, world axes.
 /// `coriolis` is nv × nv, row-major (all entries are written); needs velocities. Source: Echeandia and Wensing, Numerical
 /// methods to compute the Coriolis matrix and Christoffel symbols for rigid-body systems, J. Comput. Nonlinear Dyn. 16, 2021.
+#[inline(always)]
 pub fn coriolis_into<T: Scalar>(
     model: &Model,
     kinematics: &Kinematics<T>,
@@ -28,11 +29,13 @@ pub fn coriolis_into<T: Scalar>(
     motions_at_rest(model, kinematics, workspace);
     let ws = workspace;
     for j in (0..model.joint_count()).rev() {
-        let (composite, sway) = (ws.composite[j], ws.body_coriolis[j]);
+        let (inner, outer) = ws.composite.split_at_mut(j);
+        let (inner_sway, outer_sway) = ws.body_coriolis.split_at_mut(j);
+        let (composite, sway) = (&outer[0], &outer_sway[0]);
         for k in model.degrees_of(j) {
             let (unit, rate) = (ws.axes.unit[k], ws.axes.own_rate[k]);
-            let column = composite * rate + sway.times(unit.angular);
-            let (momentum, transposed) = (composite * unit, sway.transposed_times(unit));
+            let column = *composite * rate + sway.times(unit.angular);
+            let (momentum, transposed) = (*composite * unit, sway.transposed_times(unit));
             let own = degrees[k].index;
             coriolis[own * n + own] += unit.dot(column);
             for c in joint::carriers(model, k) {
@@ -43,8 +46,8 @@ pub fn coriolis_into<T: Scalar>(
             }
         }
         if let Some(parent) = model.parent_link(j).checked_sub(1) {
-            ws.composite[parent] += composite;
-            ws.body_coriolis[parent] += sway;
+            inner[parent] += *composite;
+            inner_sway[parent] += *sway;
         }
     }
 }

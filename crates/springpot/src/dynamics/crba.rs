@@ -11,20 +11,27 @@ use crate::spatial::{Inertia, Scalar, Vec3};
 /// `mass` is nv × nv, row-major, symmetric (both triangles are written), kg·m², kg·m or kg; needs positions. With b beyond
 /// a, column b is the momentum of all that joint b carries when it moves at unit speed, and a_ab is what joint a feels of it;
 /// joints on different branches do not couple. Rotors stand on the diagonal.
+#[inline(always)]
 pub fn crba_into<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, workspace: &mut Workspace<T>, mass: &mut [T]) {
     let (n, degrees) = (model.nv(), model.degrees());
     assert_eq!(mass.len(), n * n, "the mass matrix is nv x nv");
-    composites(model, kinematics, &mut workspace.composite);
+    let Workspace { composite, columns: axes, .. } = workspace;
+    composites(model, kinematics, composite);
     mass.fill(T::ZERO);
     for (k, degree) in degrees.iter().enumerate() {
         let (link, column) = (kinematics.link(degree.link), degree.index);
         let unit = joint::unit_motion(model, degree, link, Vec3::ZERO);
-        let composite = &workspace.composite[degree.link - 1];
-        let momentum = joint::momentum(degree, composite, unit);
-        mass[column * n + column] += unit.dot(momentum);
+        axes[k] = joint::axis(degree, link);
+        let momentum = joint::momentum(degree, &composite[degree.link - 1], unit);
+        mass[column * n + column] += joint::felt(model, degree, axes[k], momentum);
+        // Degrees of one joint, six where it floats, feel the momentum about one point.
+        let (mut about, mut moved) = (degree.link, momentum);
         for c in joint::carriers(model, k) {
-            let carrier = kinematics.link(degrees[c].link);
-            let entry = joint::felt(model, &degrees[c], carrier, momentum, link.translation);
+            if degrees[c].link != about {
+                about = degrees[c].link;
+                moved = momentum.shifted(link.translation - kinematics.link(about).translation);
+            }
+            let entry = joint::felt(model, &degrees[c], axes[c], moved);
             let row = degrees[c].index;
             mass[row * n + column] += entry;
             mass[column * n + row] += entry;
@@ -44,6 +51,7 @@ pub fn crba<T: Scalar>(model: &Model, kinematics: &Kinematics<T>) -> Vec<T> {
 }
 
 /// The inertia of all that each joint carries, about the joint's own origin, in world axes.
+#[inline(always)]
 pub(super) fn composites<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, composite: &mut [Inertia<T>]) {
     let n = model.joint_count();
     let composite = &mut composite[..n];

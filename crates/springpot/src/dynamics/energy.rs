@@ -5,6 +5,7 @@ use crate::model::Model;
 use crate::spatial::{Inertia, Motion, Scalar, Vec3};
 
 /// Kinetic energy T = ½ vᵀ M v, J, that of rotors included; needs velocities. Does not allocate.
+#[inline(always)]
 pub fn kinetic_energy<T: Scalar>(model: &Model, kinematics: &Kinematics<T>) -> T {
     let mut twice = T::ZERO;
     for j in 0..model.joint_count() {
@@ -22,6 +23,7 @@ pub fn kinetic_energy<T: Scalar>(model: &Model, kinematics: &Kinematics<T>) -> T
 /// Potential energy of gravity V = −Σ_i m_i g·r_Ci, J, zero at the world's origin; needs positions. Does not allocate.
 ///
 /// Bodies fixed to the world add a constant, which is left out.
+#[inline(always)]
 pub fn potential_energy<T: Scalar>(model: &Model, kinematics: &Kinematics<T>) -> T {
     let mut first = Vec3::ZERO;
     for j in 0..model.joint_count() {

@@ -11,6 +11,7 @@ use crate::spatial::{Scalar, Vec3};
 ///
 /// `out` is nv; needs positions. A joint feels the weight of all it carries: −Om·(H × g) or −m e·g, with the first moments H
 /// about the joint's origin.
+#[inline(always)]
 pub fn gravity_into<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, workspace: &mut Workspace<T>, out: &mut [T]) {
     let out = &mut out[..model.nv()];
     let field = Vec3::from_f64(model.gravity().into());
@@ -31,6 +32,7 @@ pub fn gravity<T: Scalar>(model: &Model, kinematics: &Kinematics<T>) -> Vec<T> {
 }
 
 /// First moments of all that each joint carries, about the joint's own origin, in world axes, kg·m.
+#[inline(always)]
 pub(super) fn first_moments_beyond<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, first: &mut [Vec3<T>]) {
     let n = model.joint_count();
     let first = &mut first[..n];

@@ -9,6 +9,7 @@ use crate::spatial::{Scalar, Vec3};
 /// joints that do not carry P. World axes, m/rad or 1.
 ///
 /// `jacobian` is 3 × nv, row-major; needs positions.
+#[inline(always)]
 pub fn point_jacobian_into<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, site: &Site, jacobian: &mut [T]) {
     let n = clear(model, jacobian);
     let point = kinematics.position(site);
@@ -29,6 +30,7 @@ pub fn point_jacobian<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, site
 /// e_b × (ṙ_P − Ȯ_b) (revolute) or ė_b (prismatic), with ė_b = ω_b × e_b.
 ///
 /// `rate` is 3 × nv, row-major; needs velocities.
+#[inline(always)]
 pub fn point_jacobian_rate_into<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, site: &Site, rate: &mut [T]) {
     let n = clear(model, rate);
     let (position, velocity) = (kinematics.position(site), kinematics.velocity(site));
@@ -50,6 +52,7 @@ pub fn point_jacobian_rate<T: Scalar>(model: &Model, kinematics: &Kinematics<T>,
 /// World axes.
 ///
 /// `jacobian` is 3 × nv, row-major; needs positions. The point of the site has no influence.
+#[inline(always)]
 pub fn angular_jacobian_into<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, site: &Site, jacobian: &mut [T]) {
     let n = clear(model, jacobian);
     for k in joint::path_to_world(model, site.link()) {
@@ -68,6 +71,7 @@ pub fn angular_jacobian<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, si
 /// Time derivative of [`angular_jacobian_into`], so that dω/dt = J a + J̇ v: column b is ω_b × e_b (revolute) or 0.
 ///
 /// `rate` is 3 × nv, row-major; needs velocities.
+#[inline(always)]
 pub fn angular_jacobian_rate_into<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, site: &Site, rate: &mut [T]) {
     let n = clear(model, rate);
     for k in joint::path_to_world(model, site.link()) {
@@ -84,7 +88,7 @@ pub fn angular_jacobian_rate<T: Scalar>(model: &Model, kinematics: &Kinematics<T
     rate
 }
 
-#[inline]
+#[inline(always)]
 fn clear<T: Scalar>(model: &Model, matrix: &mut [T]) -> usize {
     let n = model.nv();
     assert_eq!(matrix.len(), 3 * n, "the Jacobian is 3 x nv");
@@ -92,7 +96,7 @@ fn clear<T: Scalar>(model: &Model, matrix: &mut [T]) -> usize {
     n
 }
 
-#[inline]
+#[inline(always)]
 fn add_column<T: Scalar>(matrix: &mut [T], n: usize, column: usize, v: Vec3<T>) {
     let [x, y, z] = v.0;
     matrix[column] += x;

@@ -25,30 +25,45 @@ impl<T: Scalar> Stands<T> {
     }
 
     /// Reads `q` (nq).
-    #[inline]
+    #[inline(always)]
     pub(super) fn read(&mut self, model: &Model, q: &[T]) {
         for (j, coordinate) in self.coordinates.iter_mut().enumerate() {
-            let own = model.coordinates(j);
-            *coordinate = q[own.q].times_plus(T::from_f64(own.ratio), T::from_f64(own.offset));
+            *coordinate = stand(model, j, q);
         }
         T::sin_cos_each(&self.coordinates, &mut self.sines, &mut self.cosines);
     }
 
+    /// Reads `q` (nq) for some joints alone, which are then found by their places among these.
+    #[inline(always)]
+    pub(super) fn read_some(&mut self, model: &Model, joints: &[usize], q: &[T]) {
+        let count = joints.len();
+        for (coordinate, &j) in self.coordinates.iter_mut().zip(joints) {
+            *coordinate = stand(model, j, q);
+        }
+        T::sin_cos_each(&self.coordinates[..count], &mut self.sines[..count], &mut self.cosines[..count]);
+    }
+
     /// The coordinate of joint `j` of one degree, as last read.
-    #[inline]
+    #[inline(always)]
     pub(super) fn coordinate(&self, j: usize) -> T {
         self.coordinates[j]
     }
 
     /// The link frame of joint `j` in the frame of its parent link; `q` as it was read.
-    #[inline]
+    #[inline(always)]
     pub(super) fn placement(&self, model: &Model, j: usize, q: &[T]) -> Placement<T> {
+        self.placement_of(model, (j, j), q)
+    }
+
+    /// [`Self::placement`] of joint `j`, which was read in place `k`.
+    #[inline(always)]
+    pub(super) fn placement_of(&self, model: &Model, (k, j): (usize, usize), q: &[T]) -> Placement<T> {
         let at_zero = Placement::from_f64(model.joint_placement(j));
         match model.motion(j) {
-            JointMotion::Revolute => revolute::placement(at_zero, self.sines[j], self.cosines[j]),
-            JointMotion::Prismatic => prismatic::placement(at_zero, self.coordinates[j]),
+            JointMotion::Revolute => revolute::placement(at_zero, self.sines[k], self.cosines[k]),
+            JointMotion::Prismatic => prismatic::placement(at_zero, self.coordinates[k]),
             JointMotion::Helical => {
-                helical::placement(at_zero, model.pitch(j), [self.coordinates[j], self.sines[j], self.cosines[j]])
+                helical::placement(at_zero, model.pitch(j), [self.coordinates[k], self.sines[k], self.cosines[k]])
             }
             JointMotion::Spherical => spherical::placement(model, j, q),
             JointMotion::Floating => floating::placement(model, j, q),
@@ -56,22 +71,29 @@ impl<T: Scalar> Stands<T> {
     }
 }
 
+/// Where a joint of one degree stands.
+#[inline(always)]
+fn stand<T: Scalar>(model: &Model, j: usize, q: &[T]) -> T {
+    let own = model.coordinates(j);
+    q[own.q].times_plus(T::from_f64(own.ratio), T::from_f64(own.offset))
+}
+
 /// The velocity (or acceleration) of a joint of one degree.
-#[inline]
+#[inline(always)]
 fn speed<T: Scalar>(model: &Model, j: usize, v: &[T]) -> T {
     let own = model.coordinates(j);
     v[own.v] * T::from_f64(own.ratio)
 }
 
 /// The velocity (or acceleration) of a spherical or floating joint, in the axes of its link.
-#[inline]
+#[inline(always)]
 fn twist<T: Scalar>(model: &Model, j: usize, v: &[T]) -> Motion<T> {
     let own = &v[model.coordinates(j).v..];
     if model.motion(j) == JointMotion::Spherical { spherical::twist(own) } else { floating::twist(own) }
 }
 
 /// The velocity of `link`, which joint `j` moves with `v` (nv), where its parent carries its origin along with `carried`.
-#[inline]
+#[inline(always)]
 pub(super) fn velocity<T: Scalar>(
     model: &Model,
     j: usize,
@@ -79,11 +101,11 @@ pub(super) fn velocity<T: Scalar>(
     carried: Motion<T>,
     v: &[T],
 ) -> Motion<T> {
-    let axis = || link.rotation.z_axis();
+    let axis = link.rotation.z_axis();
     match model.motion(j) {
-        JointMotion::Revolute => revolute::velocity(carried, axis(), speed(model, j, v)),
-        JointMotion::Prismatic => prismatic::velocity(carried, axis(), speed(model, j, v)),
-        JointMotion::Helical => helical::velocity(carried, axis(), model.pitch(j), speed(model, j, v)),
+        JointMotion::Revolute => revolute::velocity(carried, axis, speed(model, j, v)),
+        JointMotion::Prismatic => prismatic::velocity(carried, axis, speed(model, j, v)),
+        JointMotion::Helical => helical::velocity(carried, axis, model.pitch(j), speed(model, j, v)),
         JointMotion::Spherical | JointMotion::Floating => {
             floating::velocity(carried, &link.rotation, twist(model, j, v))
         }
@@ -92,7 +114,7 @@ pub(super) fn velocity<T: Scalar>(
 
 /// The acceleration of `link`, which joint `j` moves with `v` and `a` (nv), where its parent, which turns with `omega`,
 /// carries its origin along with `carried`.
-#[inline]
+#[inline(always)]
 pub(super) fn acceleration<T: Scalar>(
     model: &Model,
     j: usize,
@@ -100,12 +122,15 @@ pub(super) fn acceleration<T: Scalar>(
     (carried, omega): (Motion<T>, Vec3<T>),
     [v, a]: [&[T]; 2],
 ) -> Motion<T> {
-    let axis = || link.rotation.z_axis();
-    let speeds = || [speed(model, j, v), speed(model, j, a)];
+    let axis = link.rotation.z_axis();
     match model.motion(j) {
-        JointMotion::Revolute => revolute::acceleration(carried, omega, axis(), speeds()),
-        JointMotion::Prismatic => prismatic::acceleration(carried, omega, axis(), speeds()),
-        JointMotion::Helical => helical::acceleration(carried, omega, axis(), model.pitch(j), speeds()),
+        JointMotion::Revolute => revolute::acceleration(carried, omega, axis, [speed(model, j, v), speed(model, j, a)]),
+        JointMotion::Prismatic => {
+            prismatic::acceleration(carried, omega, axis, [speed(model, j, v), speed(model, j, a)])
+        }
+        JointMotion::Helical => {
+            helical::acceleration(carried, omega, axis, model.pitch(j), [speed(model, j, v), speed(model, j, a)])
+        }
         JointMotion::Spherical | JointMotion::Floating => {
             let twists = [twist(model, j, v), twist(model, j, a)];
             floating::acceleration(carried, omega, &link.rotation, twists)
@@ -115,7 +140,7 @@ pub(super) fn acceleration<T: Scalar>(
 
 /// v += S q̇ and a += S q̈ + v × S q̇, with S along z: from the motion of the parent, seen at the origin of the link of joint `j` in
 /// its axes, to that of the link.
-#[inline]
+#[inline(always)]
 pub(super) fn advance<T: Scalar>(
     model: &Model,
     j: usize,
@@ -126,26 +151,26 @@ pub(super) fn advance<T: Scalar>(
 ) {
     match model.motion(j) {
         JointMotion::Revolute => {
-            let push = a.map_or(T::ZERO, |a| speed(model, j, a));
+            let push = if let Some(a) = a { speed(model, j, a) } else { T::ZERO };
             revolute::advance(velocity, acceleration, speed(model, j, v), push);
         }
         JointMotion::Prismatic => {
-            let push = a.map_or(T::ZERO, |a| speed(model, j, a));
+            let push = if let Some(a) = a { speed(model, j, a) } else { T::ZERO };
             prismatic::advance(velocity, acceleration, speed(model, j, v), push);
         }
         JointMotion::Helical => {
-            let push = a.map_or(T::ZERO, |a| speed(model, j, a));
+            let push = if let Some(a) = a { speed(model, j, a) } else { T::ZERO };
             helical::advance(velocity, acceleration, model.pitch(j), [speed(model, j, v), push]);
         }
         JointMotion::Spherical | JointMotion::Floating => {
-            let push = a.map_or(Motion::ZERO, |a| twist(model, j, a));
+            let push = if let Some(a) = a { twist(model, j, a) } else { Motion::ZERO };
             floating::advance(velocity, acceleration, twist(model, j, v), push);
         }
     }
 }
 
 /// Adds Sᵀ f to `tau` (nv), 0 until then where the joint has several degrees: what joint `j` feels of a force on its link, in the link's axes.
-#[inline]
+#[inline(always)]
 pub(super) fn add_effort<T: Scalar>(model: &Model, j: usize, force: Force<T>, tau: &mut [T]) {
     let own = model.coordinates(j);
     match model.motion(j) {
@@ -158,20 +183,19 @@ pub(super) fn add_effort<T: Scalar>(model: &Model, j: usize, force: Force<T>, ta
 }
 
 /// v × S q̇ of joint `j`, whose `link` moves with `velocity`, in world axes.
-#[inline]
+#[inline(always)]
 pub(super) fn bias<T: Scalar>(model: &Model, j: usize, link: &Placement<T>, velocity: Motion<T>, v: &[T]) -> Motion<T> {
-    let own = || link.rotation.z_axis() * speed(model, j, v);
     match model.motion(j) {
-        JointMotion::Revolute => revolute::bias(velocity, own()),
-        JointMotion::Prismatic => prismatic::bias(velocity, own()),
-        JointMotion::Helical => helical::bias(velocity, own(), model.pitch(j)),
+        JointMotion::Revolute => revolute::bias(velocity, link.rotation.z_axis() * speed(model, j, v)),
+        JointMotion::Prismatic => prismatic::bias(velocity, link.rotation.z_axis() * speed(model, j, v)),
+        JointMotion::Helical => helical::bias(velocity, link.rotation.z_axis() * speed(model, j, v), model.pitch(j)),
         JointMotion::Spherical | JointMotion::Floating => floating::bias(velocity, &link.rotation, twist(model, j, v)),
     }
 }
 
 /// The axis of a degree of freedom in world axes, as long as its ratio.
-#[inline]
-fn axis<T: Scalar>(degree: &Degree, link: &Placement<T>) -> Vec3<T> {
+#[inline(always)]
+pub(super) fn axis<T: Scalar>(degree: &Degree, link: &Placement<T>) -> Vec3<T> {
     let axis = match degree.motion.axis() {
         Axis::Z => link.rotation.z_axis(),
         Axis::Y => link.rotation.column(1),
@@ -181,7 +205,7 @@ fn axis<T: Scalar>(degree: &Degree, link: &Placement<T>) -> Vec3<T> {
 }
 
 /// The motion of the degree's link at unit velocity, at a point from which the link's origin is seen at `arm`; world axes.
-#[inline]
+#[inline(always)]
 pub(super) fn unit_motion<T: Scalar>(model: &Model, degree: &Degree, link: &Placement<T>, arm: Vec3<T>) -> Motion<T> {
     let axis = axis(degree, link);
     match degree.motion {
@@ -192,7 +216,7 @@ pub(super) fn unit_motion<T: Scalar>(model: &Model, degree: &Degree, link: &Plac
 }
 
 /// The force that the acceleration `unit` of a degree takes: I S.
-#[inline]
+#[inline(always)]
 pub(super) fn load<T: Scalar>(degree: &Degree, inertia: &ArticulatedInertia<T>, unit: Motion<T>) -> Force<T> {
     match degree.motion {
         DegreeMotion::Turn(_) => revolute::load(inertia, unit),
@@ -202,7 +226,7 @@ pub(super) fn load<T: Scalar>(degree: &Degree, inertia: &ArticulatedInertia<T>, 
 }
 
 /// The momentum of what moves with a degree at `unit` velocity: I S.
-#[inline]
+#[inline(always)]
 pub(super) fn momentum<T: Scalar>(degree: &Degree, inertia: &Inertia<T>, unit: Motion<T>) -> Force<T> {
     match degree.motion {
         DegreeMotion::Turn(_) => revolute::momentum(inertia, unit),
@@ -211,25 +235,18 @@ pub(super) fn momentum<T: Scalar>(degree: &Degree, inertia: &Inertia<T>, unit: M
     }
 }
 
-/// What a degree on `link` feels of a momentum about `point`.
-#[inline]
-pub(super) fn felt<T: Scalar>(
-    model: &Model,
-    degree: &Degree,
-    link: &Placement<T>,
-    momentum: Force<T>,
-    point: Vec3<T>,
-) -> T {
-    let unit = unit_motion(model, degree, link, Vec3::ZERO);
+/// What a degree with this axis feels of a momentum about its link's origin.
+#[inline(always)]
+pub(super) fn felt<T: Scalar>(model: &Model, degree: &Degree, axis: Vec3<T>, momentum: Force<T>) -> T {
     match degree.motion {
-        DegreeMotion::Turn(_) => revolute::felt(unit, point - link.translation, momentum),
-        DegreeMotion::Shift(_) => prismatic::felt(unit, momentum),
-        DegreeMotion::Screw => helical::felt(unit, point - link.translation, momentum),
+        DegreeMotion::Turn(_) => revolute::felt(axis, momentum),
+        DegreeMotion::Shift(_) => prismatic::felt(axis, momentum),
+        DegreeMotion::Screw => helical::felt(axis, momentum, model.pitch(degree.link - 1)),
     }
 }
 
 /// ∂r_P/∂q_k = T_k(P) for a point P that degree k carries: e × (r_P − O) or e, with its axis e and the link's origin O.
-#[inline]
+#[inline(always)]
 pub(super) fn point_column<T: Scalar>(model: &Model, degree: &Degree, link: &Placement<T>, point: Vec3<T>) -> Vec3<T> {
     let axis = axis(degree, link);
     match degree.motion {
@@ -241,7 +258,7 @@ pub(super) fn point_column<T: Scalar>(model: &Model, degree: &Degree, link: &Pla
 
 /// dT_k(P)/dt, where the link turns with `motion.angular` and its origin moves with `motion.linear`, and P moves with
 /// `velocity`.
-#[inline]
+#[inline(always)]
 pub(super) fn point_column_rate<T: Scalar>(
     model: &Model,
     degree: &Degree,
@@ -265,7 +282,7 @@ pub(super) fn point_column_rate<T: Scalar>(
 }
 
 /// ∂ω/∂v_k = Om_k of a link that degree k carries: its axis e if it turns, else 0.
-#[inline]
+#[inline(always)]
 pub(super) fn angular_column<T: Scalar>(degree: &Degree, link: &Placement<T>) -> Vec3<T> {
     match degree.motion {
         DegreeMotion::Turn(_) | DegreeMotion::Screw => axis(degree, link),
@@ -274,7 +291,7 @@ pub(super) fn angular_column<T: Scalar>(degree: &Degree, link: &Placement<T>) ->
 }
 
 /// ∂(m r_C)/∂q_k of all that degree k carries, whose first moments about the link's origin are `first`: e × H or m e.
-#[inline]
+#[inline(always)]
 pub(super) fn first_moment_column<T: Scalar>(
     model: &Model,
     degree: &Degree,
@@ -293,25 +310,25 @@ pub(super) fn first_moment_column<T: Scalar>(
 }
 
 /// The degrees of freedom that carry `link`, from the link to the world.
-#[inline]
+#[inline(always)]
 pub(super) fn path_to_world(model: &Model, link: usize) -> impl Iterator<Item = usize> + '_ {
     inwards(model, model.last_degree(link), 0)
 }
 
 /// The degrees of freedom that carry `link` but not its ancestor `end`, from the link inwards.
-#[inline]
+#[inline(always)]
 pub(super) fn path_to(model: &Model, link: usize, end: usize) -> impl Iterator<Item = usize> + '_ {
     inwards(model, model.last_degree(link), model.last_degree(end))
 }
 
 /// The degrees of freedom that carry degree `k`, from the next one to the world.
-#[inline]
+#[inline(always)]
 pub(super) fn carriers(model: &Model, k: usize) -> impl Iterator<Item = usize> + '_ {
     inwards(model, model.carrier(k), 0)
 }
 
 /// From the degree before `start` to the one behind `end`.
-#[inline]
+#[inline(always)]
 pub(super) fn inwards(model: &Model, start: usize, end: usize) -> impl Iterator<Item = usize> + '_ {
     let mut at = start;
     std::iter::from_fn(move || {
@@ -325,7 +342,7 @@ pub(super) fn inwards(model: &Model, start: usize, end: usize) -> impl Iterator<
 }
 
 /// The last link that carries both `a` and `b`; parents come first, so the larger index always steps inwards.
-#[inline]
+#[inline(always)]
 pub(super) fn common_link(model: &Model, mut a: usize, mut b: usize) -> usize {
     while a != b {
         if a > b {

@@ -34,6 +34,12 @@ pub struct Kinematics<T = f64> {
 impl<T: Scalar> Kinematics<T> {
     /// The robot in its neutral configuration, positions only.
     pub fn new(model: &Model) -> Self {
+        Self::neutral(model)
+    }
+
+    /// [`Self::new`], inlined.
+    #[inline(always)]
+    pub(super) fn neutral(model: &Model) -> Self {
         let n = model.joint_count();
         let mut kinematics = Self {
             level: Level::Position,
@@ -44,8 +50,11 @@ impl<T: Scalar> Kinematics<T> {
             joint_velocities: vec![T::ZERO; model.nv()],
             stands: Stands::new(model),
         };
-        let neutral: Vec<T> = model.neutral().into_iter().map(T::from_f64).collect();
-        kinematics.update_position(model, &neutral);
+        let mut neutral = vec![T::ZERO; model.nq()];
+        for (coordinate, number) in neutral.iter_mut().zip(model.neutral()) {
+            *coordinate = T::from_f64(number);
+        }
+        kinematics.place(model, &neutral);
         kinematics
     }
 
@@ -71,17 +80,42 @@ impl<T: Scalar> Kinematics<T> {
     }
 
     /// Of every joint, the placement of its link in the parent's.
+    #[inline(always)]
     pub(super) fn locals(&self) -> &[Placement<T>] {
         &self.locals
     }
 
     /// World placements of all links, the world first.
+    #[inline(always)]
     pub(super) fn placements(&self) -> &[Placement<T>] {
         &self.placements
     }
 
     /// Moves to `q` (nq): placements alone. Does not allocate.
     pub fn update_position(&mut self, model: &Model, q: &[T]) {
+        self.place(model, q);
+    }
+
+    /// Moves to `q` (nq) with velocities `v` (nv). Does not allocate.
+    ///
+    /// With r from the parent link's origin to the joint's: ω = ω_p + e q̇, ṗ = ṗ_p + ω_p × r (revolute); ω = ω_p,
+    /// ṗ = ṗ_p + ω_p × r + e q̇ (prismatic); ω = ω_p + R ω_J, ṗ = ṗ_p + ω_p × r + R u_J (floating, with its twist (u_J, ω_J) in
+    /// the link's axes).
+    pub fn update_velocity(&mut self, model: &Model, q: &[T], v: &[T]) {
+        self.set_moving(model, q, v);
+    }
+
+    /// Moves to `q` (nq) with velocities `v` (nv) and accelerations `a` (nv). Does not allocate.
+    ///
+    /// ω̇ = ω̇_p + ω_p × e q̇ + e q̈, p̈ = p̈_p + ω̇_p × r + ω_p × (ω_p × r) (revolute); ω̇ = ω̇_p, p̈ the same
+    /// + 2 ω_p × e q̇ + e q̈ (prismatic); ω̇ = ω̇_p + ω_p × R ω_J + R ω̇_J, p̈ the same + (ω_p + ω) × R u_J + R u̇_J (floating).
+    pub fn update_acceleration(&mut self, model: &Model, q: &[T], v: &[T], a: &[T]) {
+        self.set_accelerating(model, q, v, a);
+    }
+
+    /// [`Self::update_position`], inlined.
+    #[inline(always)]
+    pub(super) fn place(&mut self, model: &Model, q: &[T]) {
         self.level = Level::Position;
         let (n, q) = (model.joint_count(), &q[..model.nq()]);
         assert_eq!(self.placements.len(), n + 1, "the kinematics are of another model");
@@ -99,13 +133,10 @@ impl<T: Scalar> Kinematics<T> {
         }
     }
 
-    /// Moves to `q` (nq) with velocities `v` (nv). Does not allocate.
-    ///
-    /// With r from the parent link's origin to the joint's: ω = ω_p + e q̇, ṗ = ṗ_p + ω_p × r (revolute); ω = ω_p,
-    /// ṗ = ṗ_p + ω_p × r + e q̇ (prismatic); ω = ω_p + R ω_J, ṗ = ṗ_p + ω_p × r + R u_J (floating, with its twist (u_J, ω_J) in
-    /// the link's axes).
-    pub fn update_velocity(&mut self, model: &Model, q: &[T], v: &[T]) {
-        self.update_position(model, q);
+    /// [`Self::update_velocity`], inlined.
+    #[inline(always)]
+    pub(super) fn set_moving(&mut self, model: &Model, q: &[T], v: &[T]) {
+        self.place(model, q);
         self.level = Level::Velocity;
         let v = &v[..model.nv()];
         self.joint_velocities.copy_from_slice(v);
@@ -119,12 +150,10 @@ impl<T: Scalar> Kinematics<T> {
         }
     }
 
-    /// Moves to `q` (nq) with velocities `v` (nv) and accelerations `a` (nv). Does not allocate.
-    ///
-    /// ω̇ = ω̇_p + ω_p × e q̇ + e q̈, p̈ = p̈_p + ω̇_p × r + ω_p × (ω_p × r) (revolute); ω̇ = ω̇_p, p̈ the same
-    /// + 2 ω_p × e q̇ + e q̈ (prismatic); ω̇ = ω̇_p + ω_p × R ω_J + R ω̇_J, p̈ the same + (ω_p + ω) × R u_J + R u̇_J (floating).
-    pub fn update_acceleration(&mut self, model: &Model, q: &[T], v: &[T], a: &[T]) {
-        self.update_velocity(model, q, v);
+    /// [`Self::update_acceleration`], inlined.
+    #[inline(always)]
+    pub(super) fn set_accelerating(&mut self, model: &Model, q: &[T], v: &[T], a: &[T]) {
+        self.set_moving(model, q, v);
         self.level = Level::Acceleration;
         let (v, a) = (&v[..model.nv()], &a[..model.nv()]);
         for j in 0..model.joint_count() {
@@ -139,31 +168,31 @@ impl<T: Scalar> Kinematics<T> {
     }
 
     /// World placement of `link` (0 is the world, joint j moves link j + 1).
-    #[inline]
+    #[inline(always)]
     pub fn link(&self, link: usize) -> &Placement<T> {
         &self.placements[link]
     }
 
     /// World placement of a body's joint frame; its `rotation` takes body components to world components.
-    #[inline]
+    #[inline(always)]
     pub fn frame(&self, frame: &Frame) -> Placement<T> {
         self.placements[frame.link()] * Placement::from_f64(frame.placement())
     }
 
     /// World position r_P of a point, m.
-    #[inline]
+    #[inline(always)]
     pub fn position(&self, site: &Site) -> Vec3<T> {
         self.placements[site.link()].point(Vec3::from_f64(site.point()))
     }
 
     /// World velocity dr_P/dt of a point, m/s.
-    #[inline]
+    #[inline(always)]
     pub fn velocity(&self, site: &Site) -> Vec3<T> {
         self.velocity_at(site.link(), self.arm(site))
     }
 
     /// World acceleration d²r_P/dt² of a point, m/s² (gravity is no part of it).
-    #[inline]
+    #[inline(always)]
     pub fn acceleration(&self, site: &Site) -> Vec3<T> {
         let Motion { angular, linear } = self.link_acceleration(site.link());
         let (omega, arm) = (self.velocities[site.link()].angular, self.arm(site));
@@ -171,21 +200,21 @@ impl<T: Scalar> Kinematics<T> {
     }
 
     /// ω, rad/s, and velocity of the origin, m/s, of `link` in world axes.
-    #[inline]
+    #[inline(always)]
     pub fn link_velocity(&self, link: usize) -> Motion<T> {
         debug_assert!(self.level >= Level::Velocity, "the kinematics hold positions only");
         self.velocities[link]
     }
 
     /// dω/dt, rad/s², and acceleration of the origin, m/s², of `link` in world axes.
-    #[inline]
+    #[inline(always)]
     pub fn link_acceleration(&self, link: usize) -> Motion<T> {
         debug_assert!(self.level >= Level::Acceleration, "the kinematics hold no accelerations");
         self.accelerations[link]
     }
 
     /// The joint velocities of the last update.
-    #[inline]
+    #[inline(always)]
     pub fn joint_velocities(&self) -> &[T] {
         debug_assert!(self.level >= Level::Velocity, "the kinematics hold positions only");
         &self.joint_velocities
@@ -193,18 +222,18 @@ impl<T: Scalar> Kinematics<T> {
 
     /// Where moving joint `joint` stands, rad or m; of one that follows another, ratio · its coordinate + offset. Without
     /// meaning for a floating joint.
-    #[inline]
+    #[inline(always)]
     pub fn joint_coordinate(&self, joint: usize) -> T {
         self.stands.coordinate(joint)
     }
 
     /// From the origin of the point's link to the point, world axes.
-    #[inline]
+    #[inline(always)]
     pub(super) fn arm(&self, site: &Site) -> Vec3<T> {
         self.placements[site.link()].rotation * Vec3::from_f64(site.point())
     }
 
-    #[inline]
+    #[inline(always)]
     fn velocity_at(&self, link: usize, arm: Vec3<T>) -> Vec3<T> {
         let Motion { angular, linear } = self.link_velocity(link);
         linear + angular.cross(arm)

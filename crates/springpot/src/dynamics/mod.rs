@@ -13,6 +13,7 @@
 
 mod aba;
 mod aba_derivatives;
+pub mod batch;
 mod body_coriolis;
 mod cholesky;
 mod christoffel;
@@ -49,7 +50,9 @@ pub use forces::pair::{
 };
 pub use forces::wrench::{add_wrench, add_wrench_derivative};
 pub(crate) use forces::{CableLength, RelativeCoordinate};
-pub use frame_jacobian::{frame_jacobian, frame_jacobian_into, frame_jacobian_rate, frame_jacobian_rate_into};
+pub use frame_jacobian::{
+    frame_jacobian, frame_jacobian_at_into, frame_jacobian_into, frame_jacobian_rate, frame_jacobian_rate_into,
+};
 pub use gravity::{gravity, gravity_into};
 pub use jacobian::{
     angular_jacobian, angular_jacobian_into, angular_jacobian_rate, angular_jacobian_rate_into, point_jacobian,

@@ -10,12 +10,13 @@ use crate::spatial::{Force, Inertia, Motion, Scalar, Vec3};
 
 /// The point, at rest, about which all of the robot is taken: where the first joint is, so that a robot far from the world's
 /// origin keeps its digits.
-#[inline]
+#[inline(always)]
 pub(super) fn reference<T: Scalar>(kinematics: &Kinematics<T>) -> Vec3<T> {
     kinematics.link(1).translation
 }
 
 /// Velocities, accelerations (less gravity) where a = 0, columns and inertia forces of all links at the reference point.
+#[inline(always)]
 pub(super) fn motions_at_rest<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, ws: &mut Workspace<T>) {
     motions(model, kinematics, None, ws);
 }
@@ -25,6 +26,7 @@ pub(super) fn motions_at_rest<T: Scalar>(model: &Model, kinematics: &Kinematics<
 ///
 /// With v_λ, a_λ of the parent link: ψ̇ = v_λ × J (`unit_rate`), ψ̈ = a_λ × J + v_λ × ψ̇ (`unit_second_rate`), J̇ = v × J of the
 /// link itself (`unit_own_rate`), which is ψ̇ for a joint of one degree.
+#[inline(always)]
 pub(super) fn motions<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, a: Option<&[T]>, ws: &mut Workspace<T>) {
     let (origin, v) = (reference(kinematics), kinematics.joint_velocities());
     ws.velocity[0] = Motion::ZERO;
@@ -41,7 +43,7 @@ pub(super) fn motions<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, a: O
             let rate = carrier.cross(unit);
             velocity += unit * v[degree.index];
             acceleration += rate * v[degree.index];
-            acceleration += a.map_or(Motion::ZERO, |a| unit * a[degree.index]);
+            acceleration += if let Some(a) = a { unit * a[degree.index] } else { Motion::ZERO };
             (ws.axes.unit[k], ws.axes.rate[k], ws.axes.own_rate[k]) = (unit, rate, rate);
             ws.axes.second_rate[k] = pushed.cross(unit) + carrier.cross(rate);
         }

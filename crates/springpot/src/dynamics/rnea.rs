@@ -4,13 +4,14 @@ use super::forces::pair::{self, PairForce};
 use super::joint;
 use super::kinematics::Kinematics;
 use super::workspace::Workspace;
-use crate::model::Model;
+use crate::model::{Model, Site};
 use crate::spatial::{Force, Inertia, Motion, Placement, Scalar, Vec3};
 
 /// Actuator forces τ = M(q) a + C(q, v) v + g(q) − ΣQ, N·m or N, with Q_b = −F ∂l/∂q_b of every pair force.
 ///
 /// `q` (nq), `v`, `a`, `tau` (nv). Joint damping and friction are no part of it. A pair of length 0 gives NaN; see
 /// [`Pair::check`](super::Pair::check). Source: Featherstone, Rigid Body Dynamics Algorithms, 2008, table 5.1.
+#[inline(always)]
 pub fn rnea_into<T: Scalar>(
     model: &Model,
     q: &[T],
@@ -25,6 +26,7 @@ pub fn rnea_into<T: Scalar>(
 }
 
 /// [`rnea_into`] where the `kinematics` at `q` (nq) and v are at hand: nothing of them is worked out again.
+#[inline(always)]
 pub fn rnea_at_into<T: Scalar>(
     model: &Model,
     kinematics: &Kinematics<T>,
@@ -39,6 +41,7 @@ pub fn rnea_at_into<T: Scalar>(
 }
 
 /// Nonlinear effects C(q, v) v + g(q) − ΣQ, N·m or N: what the actuators hold without acceleration, [`rnea_into`] at a = 0.
+#[inline(always)]
 pub fn nonlinear_effects_into<T: Scalar>(
     model: &Model,
     q: &[T],
@@ -57,7 +60,7 @@ pub fn nonlinear_effects<T: Scalar>(model: &Model, q: &[T], v: &[T], pairs: &[Pa
     tau
 }
 
-#[inline]
+#[inline(always)]
 fn inverse_dynamics<T: Scalar>(
     model: &Model,
     [q, v]: [&[T]; 2],
@@ -78,7 +81,10 @@ fn inverse_dynamics<T: Scalar>(
     ws.force[0] = Force::ZERO;
     for j in 0..n {
         let parent = model.parent_link(j);
-        let local = kinematics.map_or_else(|| ws.stands.placement(model, j, q), |known| known.locals()[j]);
+        let local = match kinematics {
+            Some(known) => known.locals()[j],
+            None => ws.stands.placement(model, j, q),
+        };
         let mut velocity = local.motion_to_child(ws.velocity[parent]);
         let mut acceleration = local.motion_to_child(ws.acceleration[parent]);
         joint::advance(model, j, &mut velocity, &mut acceleration, v, a);
@@ -117,6 +123,7 @@ pub fn rnea<T: Scalar>(model: &Model, q: &[T], v: &[T], a: &[T], pairs: &[PairFo
 }
 
 /// World placements of all links from those in their parents.
+#[inline(always)]
 fn place_links<T: Scalar>(model: &Model, ws: &mut Workspace<T>) {
     ws.world[0] = Placement::IDENTITY;
     for j in 0..model.joint_count() {
@@ -125,11 +132,18 @@ fn place_links<T: Scalar>(model: &Model, ws: &mut Workspace<T>) {
 }
 
 /// Takes what the pairs do off the forces that the joints must supply, so that one backward pass serves any number of pairs.
+#[inline(always)]
 fn subtract_pair_forces<T: Scalar>(pairs: &[PairForce<T>], ws: &mut Workspace<T>) {
     for pair in pairs {
         let (from, to) = (pair.from.link(), pair.to.link());
-        let pull = pair::pull(pair, |site| ws.world[site.link()].point(Vec3::from_f64(site.point())));
+        let pull = pair::pull(pair, placed(&ws.world, &pair.from), placed(&ws.world, &pair.to));
         ws.force[from] -= Force::at_point(ws.world[from].rotation.unrotate(pull), Vec3::from_f64(pair.from.point()));
         ws.force[to] += Force::at_point(ws.world[to].rotation.unrotate(pull), Vec3::from_f64(pair.to.point()));
     }
+}
+
+/// World position of a point.
+#[inline(always)]
+fn placed<T: Scalar>(world: &[Placement<T>], site: &Site) -> Vec3<T> {
+    world[site.link()].point(Vec3::from_f64(site.point()))
 }

@@ -44,6 +44,7 @@ impl<T: Scalar> RneaDerivatives<T> {
 ///
 /// Sources: Carpentier and Mansard, Analytical derivatives of rigid body dynamics algorithms, RSS 2018; Singh, Russell and
 /// Wensing, Efficient analytical derivatives of rigid-body dynamics using spatial vector algebra, IEEE RA-L 7(2), 2022.
+#[inline(always)]
 pub fn rnea_derivatives_into<T: Scalar>(
     model: &Model,
     kinematics: &Kinematics<T>,
@@ -72,7 +73,7 @@ pub(crate) fn rnea_derivatives_of_moving(
     differentiate(model, kinematics, a, workspace, derivatives, |velocity| moves[velocity]);
 }
 
-#[inline]
+#[inline(always)]
 fn differentiate<T: Scalar>(
     model: &Model,
     kinematics: &Kinematics<T>,
@@ -97,22 +98,24 @@ fn differentiate<T: Scalar>(
     }
     let two = T::from_f64(2.0);
     for j in (0..model.joint_count()).rev() {
-        let (inertia, moving, load) = (ws.composite[j], ws.body_coriolis[j], ws.force[j + 1]);
+        let (inner, outer) = ws.composite.split_at_mut(j);
+        let (inner_moving, outer_moving) = ws.body_coriolis.split_at_mut(j);
+        let (inertia, moving, load) = (&outer[0], &outer_moving[0], ws.force[j + 1]);
         for k in model.degrees_of(j) {
             let own = ws.axes.unit[k];
-            let at_rest = inertia * ws.axes.second_rate[k] + moving.times(ws.axes.rate[k].angular) * two;
+            let at_rest = *inertia * ws.axes.second_rate[k] + moving.times(ws.axes.rate[k].angular) * two;
             let by_position = at_rest + own.cross_force(load);
             let column = degrees[k].index;
             // Degrees of one joint move with one another.
-            let turned = |c: usize| if degrees[c].link == j + 1 { at_rest } else { by_position };
             if !moves(column) {
                 for c in joint::carriers(model, k).filter(|c| moves(degrees[*c].index)) {
-                    d_q[degrees[c].index * n + column] += ws.axes.unit[c].dot(turned(c));
+                    let turned = if degrees[c].link == j + 1 { at_rest } else { by_position };
+                    d_q[degrees[c].index * n + column] += ws.axes.unit[c].dot(turned);
                 }
                 continue;
             }
-            let by_velocity = inertia * ws.axes.both_rates[k] + moving.times(own.angular) * two;
-            let momentum = inertia * own;
+            let by_velocity = *inertia * ws.axes.both_rates[k] + moving.times(own.angular) * two;
+            let momentum = *inertia * own;
             let swaying = moving.transposed_times(own) * two;
             let diagonal = column * n + column;
             d_q[diagonal] += own.dot(at_rest);
@@ -127,7 +130,8 @@ fn differentiate<T: Scalar>(
                     continue;
                 }
                 let carrier = ws.axes.unit[c];
-                d_q[upper] += carrier.dot(turned(c));
+                let turned = if degrees[c].link == j + 1 { at_rest } else { by_position };
+                d_q[upper] += carrier.dot(turned);
                 d_v[upper] += carrier.dot(by_velocity);
                 let coupling = carrier.dot(momentum);
                 d_a[upper] += coupling;
@@ -137,8 +141,8 @@ fn differentiate<T: Scalar>(
         }
         let parent = model.parent_link(j);
         if parent > 0 {
-            ws.composite[parent - 1] += inertia;
-            ws.body_coriolis[parent - 1] += moving;
+            inner[parent - 1] += *inertia;
+            inner_moving[parent - 1] += *moving;
             ws.force[parent] += load;
         }
     }

@@ -28,6 +28,8 @@ pub struct Workspace<T = f64> {
     /// ∂l/∂q and ∂l'/∂q of a pair.
     pub(super) gradient: Vec<T>,
     pub(super) rate_gradient: Vec<T>,
+    /// Joints on the way from a frame to the world.
+    pub(super) path: Vec<usize>,
     /// The mass matrix, where joints follow one another.
     pub(super) mass: Vec<T>,
 }
@@ -95,6 +97,7 @@ impl<T: Scalar> Workspace<T> {
             body_coriolis: vec![BodyCoriolis::ZERO; n],
             gradient: vec![T::ZERO; d],
             rate_gradient: vec![T::ZERO; d],
+            path: Vec::with_capacity(n),
             mass: vec![T::ZERO; dense * dense],
         }
     }

@@ -385,6 +385,30 @@ impl Model {
         self.tree.last_degrees[link]
     }
 
+    /// One more than the last velocity whose elimination touches velocity `i`, `i` among them.
+    #[inline]
+    pub(crate) fn subtree_end(&self, i: usize) -> usize {
+        self.tree.ends[i]
+    }
+
+    /// The velocities whose elimination touches velocity `i`, but `i`, from the last one inwards.
+    #[inline(always)]
+    pub(crate) fn carried(&self, i: usize) -> impl Iterator<Item = usize> + Clone + '_ {
+        (i + 1..self.tree.ends[i]).rev().filter(move |k| self.tree.is_depth_first || self.touches(*k, i))
+    }
+
+    /// Whether the elimination of velocity `k` touches velocity `i`.
+    #[cold]
+    fn touches(&self, mut k: usize, i: usize) -> bool {
+        while k > i {
+            match self.tree.pivots[k].checked_sub(1) {
+                Some(inner) => k = inner,
+                None => return false,
+            }
+        }
+        k == i
+    }
+
     /// One more than the velocity that the elimination of velocity `i` touches next, or 0.
     #[inline]
     pub(crate) fn pivot(&self, i: usize) -> usize {

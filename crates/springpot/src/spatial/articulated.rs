@@ -28,7 +28,7 @@ impl<T: Scalar> ArticulatedInertia<T> {
     pub const ZERO: Self = Self { angular: Symmetric3::ZERO, coupling: [Vec3::ZERO; 3], linear: Symmetric3::ZERO };
 
     /// A rigid body.
-    #[inline]
+    #[inline(always)]
     pub fn from_rigid(inertia: &Inertia<T>) -> Self {
         let ([x, y, z], m) = (inertia.first_moment.0, inertia.mass);
         Self {
@@ -39,64 +39,52 @@ impl<T: Scalar> ArticulatedInertia<T> {
     }
 
     /// The force that gives the angular acceleration `alpha` alone: (A α, Bᵀ α).
-    #[inline]
+    #[inline(always)]
     pub fn times_angular(&self, alpha: Vec3<T>) -> Force<T> {
         let ([x, y, z], [b0, b1, b2]) = (alpha.0, self.coupling);
         Force { angular: self.angular * alpha, linear: b2.times_plus(z, b1.times_plus(y, b0 * x)) }
     }
 
     /// The force that gives the linear acceleration `beta` alone: (B β, C β).
-    #[inline]
+    #[inline(always)]
     pub fn times_linear(&self, beta: Vec3<T>) -> Force<T> {
         let [b0, b1, b2] = self.coupling;
         Force { angular: Vec3([b0.dot(beta), b1.dot(beta), b2.dot(beta)]), linear: self.linear * beta }
     }
 
     /// The force that the acceleration `m` takes: (A α + B β, Bᵀ α + C β).
-    #[inline]
+    #[inline(always)]
     pub fn times(&self, m: Motion<T>) -> Force<T> {
         self.times_angular(m.angular) + self.times_linear(m.linear)
     }
 
     /// self − U Uᵀ k: what is left when one joint yields.
-    #[inline]
+    #[inline(always)]
     pub fn minus_outer(&self, u: Force<T>, k: T) -> Self {
         let ([nx, ny, nz], f) = (u.angular.0, u.linear);
         let minus_k = -k;
-        let less = |s: &Symmetric3<T>, v: Vec3<T>| {
-            let [x, y, z] = v.0;
-            let [kx, ky, kz] = (v * minus_k).0;
-            Symmetric3 {
-                xx: kx.times_plus(x, s.xx),
-                yy: ky.times_plus(y, s.yy),
-                zz: kz.times_plus(z, s.zz),
-                xy: kx.times_plus(y, s.xy),
-                xz: kx.times_plus(z, s.xz),
-                yz: ky.times_plus(z, s.yz),
-            }
-        };
         let [b0, b1, b2] = self.coupling;
         let kf = f * minus_k;
         Self {
-            angular: less(&self.angular, u.angular),
+            angular: plus_outer(&self.angular, u.angular, minus_k),
             coupling: [kf.times_plus(nx, b0), kf.times_plus(ny, b1), kf.times_plus(nz, b2)],
-            linear: less(&self.linear, f),
+            linear: plus_outer(&self.linear, f, minus_k),
         }
     }
 
     /// The same inertia about another point, from which the present origin is seen at `d`; the axes stay.
     ///
     /// B' = B + \[d\]× C, A' = A − B \[d\]× + \[d\]× B'ᵀ, C' = C.
-    #[inline]
+    #[inline(always)]
     pub fn shifted(&self, d: Vec3<T>) -> Self {
         let c = &self.linear;
         let columns =
             [d.cross(Vec3([c.xx, c.xy, c.xz])), d.cross(Vec3([c.xy, c.yy, c.yz])), d.cross(Vec3([c.xz, c.yz, c.zz]))];
-        let row = |r: usize| self.coupling[r] + Vec3([columns[0].0[r], columns[1].0[r], columns[2].0[r]]);
-        let coupling = [row(0), row(1), row(2)];
+        let [Vec3([x0, x1, x2]), Vec3([y0, y1, y2]), Vec3([z0, z1, z2])] = columns;
+        let [b0, b1, b2] = self.coupling;
+        let coupling = [b0 + Vec3([x0, y0, z0]), b1 + Vec3([x1, y1, z1]), b2 + Vec3([x2, y2, z2])];
         // Row r of −B [d]× is d × b_r, column c of [d]× B'ᵀ is d × b'_c.
-        let turned = |[b0, b1, b2]: [Vec3<T>; 3]| [d.cross(b0).0, d.cross(b1).0, d.cross(b2).0];
-        let ([p0, p1, p2], [q0, q1, q2]) = (turned(self.coupling), turned(coupling));
+        let ([p0, p1, p2], [q0, q1, q2]) = (crossed(d, self.coupling), crossed(d, coupling));
         let a = &self.angular;
         let angular = Symmetric3 {
             xx: a.xx + (p0[0] + q0[0]),
@@ -110,13 +98,32 @@ impl<T: Scalar> ArticulatedInertia<T> {
     }
 }
 
+/// s + k v vᵀ; a function, since closures are not always inlined.
+#[inline(always)]
+fn plus_outer<T: Scalar>(s: &Symmetric3<T>, v: Vec3<T>, k: T) -> Symmetric3<T> {
+    let ([x, y, z], [kx, ky, kz]) = (v.0, (v * k).0);
+    Symmetric3 {
+        xx: kx.times_plus(x, s.xx),
+        yy: ky.times_plus(y, s.yy),
+        zz: kz.times_plus(z, s.zz),
+        xy: kx.times_plus(y, s.xy),
+        xz: kx.times_plus(z, s.xz),
+        yz: ky.times_plus(z, s.yz),
+    }
+}
+
+/// d × b of every row b.
+#[inline(always)]
+fn crossed<T: Scalar>(d: Vec3<T>, [b0, b1, b2]: [Vec3<T>; 3]) -> [[T; 3]; 3] {
+    [d.cross(b0).0, d.cross(b1).0, d.cross(b2).0]
+}
+
 impl<T: Scalar> AddAssign for ArticulatedInertia<T> {
-    #[inline]
+    #[inline(always)]
     fn add_assign(&mut self, o: Self) {
         self.angular += o.angular;
-        for (row, other) in self.coupling.iter_mut().zip(o.coupling) {
-            *row += other;
-        }
+        let ([a0, a1, a2], [b0, b1, b2]) = (self.coupling, o.coupling);
+        self.coupling = [a0 + b0, a1 + b1, a2 + b2];
         self.linear += o.linear;
     }
 }

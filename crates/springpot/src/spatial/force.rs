@@ -19,13 +19,13 @@ impl<T: Scalar> Force<T> {
     pub const ZERO: Self = Self { linear: Vec3::ZERO, angular: Vec3::ZERO };
 
     /// The wrench of a force that acts at `point`.
-    #[inline]
+    #[inline(always)]
     pub fn at_point(force: Vec3<T>, point: Vec3<T>) -> Self {
         Self { linear: force, angular: point.cross(force) }
     }
 
     /// The same wrench about another point, from which the present origin is seen at `arm`; the axes stay: (f, n + arm × f).
-    #[inline]
+    #[inline(always)]
     pub fn shifted(self, arm: Vec3<T>) -> Self {
         Self { linear: self.linear, angular: self.angular + arm.cross(self.linear) }
     }
@@ -33,21 +33,21 @@ impl<T: Scalar> Force<T> {
 
 impl<T: Scalar> Add for Force<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         Self { linear: self.linear + other.linear, angular: self.angular + other.angular }
     }
 }
 
 impl<T: Scalar> AddAssign for Force<T> {
-    #[inline]
+    #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
 impl<T: Scalar> SubAssign for Force<T> {
-    #[inline]
+    #[inline(always)]
     fn sub_assign(&mut self, other: Self) {
         self.linear -= other.linear;
         self.angular -= other.angular;
@@ -56,7 +56,7 @@ impl<T: Scalar> SubAssign for Force<T> {
 
 impl<T: Scalar> Mul<T> for Force<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn mul(self, factor: T) -> Self {
         Self { linear: self.linear * factor, angular: self.angular * factor }
     }

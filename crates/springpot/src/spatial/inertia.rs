@@ -26,7 +26,7 @@ impl<T: Scalar> Inertia<T> {
     pub const ZERO: Self = Self { mass: T::ZERO, first_moment: Vec3::ZERO, rotational: Symmetric3::ZERO };
 
     /// A constant inertia (the same in every state).
-    #[inline]
+    #[inline(always)]
     pub fn from_f64(i: &Inertia<f64>) -> Self {
         Self {
             mass: T::from_f64(i.mass),
@@ -36,13 +36,13 @@ impl<T: Scalar> Inertia<T> {
     }
 
     /// The inertia about the origin of a body with mass `mass`, centre of mass `com` and tensor `central` about it.
-    #[inline]
+    #[inline(always)]
     pub fn from_central(mass: T, com: Vec3<T>, central: Symmetric3<T>) -> Self {
         Self { mass, first_moment: Vec3::ZERO, rotational: central }.shifted(com)
     }
 
     /// The same body in the axes into which `r` leads; the origin stays.
-    #[inline]
+    #[inline(always)]
     pub fn rotated(&self, r: &Rotation<T>) -> Self {
         Self { mass: self.mass, first_moment: *r * self.first_moment, rotational: self.rotational.rotated(r) }
     }
@@ -50,7 +50,7 @@ impl<T: Scalar> Inertia<T> {
     /// The same body about another point, from which the present origin is seen at `d`; the axes stay.
     ///
     /// h' = h + m d, I' = I + 2 (h·d) 1 − h dᵀ − d hᵀ + m (d·d 1 − d dᵀ).
-    #[inline]
+    #[inline(always)]
     pub fn shifted(&self, d: Vec3<T>) -> Self {
         let first_moment = d.times_plus(self.mass, self.first_moment);
         // With g = h + h' = 2 h + m d the correction is (g·d) 1 − ½ (g dᵀ + d gᵀ).
@@ -70,19 +70,19 @@ impl<T: Scalar> Inertia<T> {
     }
 
     /// Momentum of the body that turns about the origin with the angular velocity `omega`: (ω × h, I ω).
-    #[inline]
+    #[inline(always)]
     pub fn turned_by(&self, omega: Vec3<T>) -> Force<T> {
         Force { linear: omega.cross(self.first_moment), angular: self.rotational * omega }
     }
 
     /// Momentum of the body that moves with the velocity `v` without turning: (m v, h × v).
-    #[inline]
+    #[inline(always)]
     pub fn shifted_by(&self, v: Vec3<T>) -> Force<T> {
         Force { linear: v * self.mass, angular: self.first_moment.cross(v) }
     }
 
     /// The same body in the parent frame of `placement`.
-    #[inline]
+    #[inline(always)]
     pub fn to_parent(&self, placement: &Placement<T>) -> Self {
         self.rotated(&placement.rotation).shifted(placement.translation)
     }
@@ -104,7 +104,7 @@ impl Inertia<f64> {
 /// Momentum of the body that moves with a velocity.
 impl<T: Scalar> Mul<Motion<T>> for Inertia<T> {
     type Output = Force<T>;
-    #[inline]
+    #[inline(always)]
     fn mul(self, m: Motion<T>) -> Force<T> {
         Force {
             linear: m.linear.times_plus(self.mass, m.angular.cross(self.first_moment)),
@@ -115,7 +115,7 @@ impl<T: Scalar> Mul<Motion<T>> for Inertia<T> {
 
 impl<T: Scalar> Add for Inertia<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         Self {
             mass: self.mass + other.mass,
@@ -126,7 +126,7 @@ impl<T: Scalar> Add for Inertia<T> {
 }
 
 impl<T: Scalar> AddAssign for Inertia<T> {
-    #[inline]
+    #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }

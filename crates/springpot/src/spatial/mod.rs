@@ -4,8 +4,12 @@
 //! A [`Motion`] or [`Force`] is a pair of three-vectors taken at the origin of the frame it is expressed in.
 
 mod articulated;
+pub(crate) mod columns;
+pub(crate) mod dispatch;
 mod force;
 mod inertia;
+#[cfg(target_arch = "x86_64")]
+pub(crate) mod lanes;
 mod motion;
 mod placement;
 mod quaternion;
@@ -16,6 +20,7 @@ mod symmetric;
 mod vector;
 
 pub use articulated::ArticulatedInertia;
+pub use dispatch::{SimdError, SimdLevel};
 pub use force::Force;
 pub use inertia::Inertia;
 pub use motion::Motion;

@@ -21,20 +21,20 @@ impl<T: Scalar> Motion<T> {
     pub const ZERO: Self = Self { angular: Vec3::ZERO, linear: Vec3::ZERO };
 
     /// The same motion at another point, which is seen at `arm` from the present origin; the axes stay: (ω, v + ω × arm).
-    #[inline]
+    #[inline(always)]
     pub fn shifted(self, arm: Vec3<T>) -> Self {
         Self { angular: self.angular, linear: self.linear + self.angular.cross(arm) }
     }
 
     /// The same motion in the axes into which `r` leads; the origin stays.
-    #[inline]
+    #[inline(always)]
     pub fn rotated(self, r: &Rotation<T>) -> Self {
         Self { angular: *r * self.angular, linear: *r * self.linear }
     }
 
     /// The cross product with a motion, v × m = (ω × ω_m, ω × v_m + v × ω_m): how `m`, fixed in a frame that moves with v,
     /// changes.
-    #[inline]
+    #[inline(always)]
     pub fn cross(self, m: Self) -> Self {
         Self {
             angular: self.angular.cross(m.angular),
@@ -43,7 +43,7 @@ impl<T: Scalar> Motion<T> {
     }
 
     /// The cross product with a force, v ×* f = (ω × f, ω × n + v × f) in the order (linear, angular).
-    #[inline]
+    #[inline(always)]
     pub fn cross_force(self, f: Force<T>) -> Force<T> {
         Force {
             linear: self.angular.cross(f.linear),
@@ -52,7 +52,7 @@ impl<T: Scalar> Motion<T> {
     }
 
     /// Power f · v, W, of a force at the same origin.
-    #[inline]
+    #[inline(always)]
     pub fn dot(self, f: Force<T>) -> T {
         self.angular.dot(f.angular) + self.linear.dot(f.linear)
     }
@@ -60,14 +60,14 @@ impl<T: Scalar> Motion<T> {
 
 impl<T: Scalar> Add for Motion<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         Self { angular: self.angular + other.angular, linear: self.linear + other.linear }
     }
 }
 
 impl<T: Scalar> AddAssign for Motion<T> {
-    #[inline]
+    #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
@@ -75,7 +75,7 @@ impl<T: Scalar> AddAssign for Motion<T> {
 
 impl<T: Scalar> Mul<T> for Motion<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn mul(self, factor: T) -> Self {
         Self { angular: self.angular * factor, linear: self.linear * factor }
     }

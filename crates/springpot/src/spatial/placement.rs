@@ -22,19 +22,19 @@ impl<T: Scalar> Placement<T> {
     pub const IDENTITY: Self = Self { rotation: Rotation::IDENTITY, translation: Vec3::ZERO };
 
     /// A constant placement (the same in every state).
-    #[inline]
+    #[inline(always)]
     pub fn from_f64(p: &Placement<f64>) -> Self {
         Self { rotation: Rotation::from_f64(&p.rotation), translation: Vec3::from_f64(p.translation) }
     }
 
     /// Parent components of the point with child components `x`.
-    #[inline]
+    #[inline(always)]
     pub fn point(&self, x: Vec3<T>) -> Vec3<T> {
         self.rotation * x + self.translation
     }
 
     /// A motion given at the parent's origin, at the child's origin and in child axes: (Rᵀ ω, Rᵀ (v + ω × p)).
-    #[inline]
+    #[inline(always)]
     pub fn motion_to_child(&self, m: Motion<T>) -> Motion<T> {
         Motion {
             angular: self.rotation.unrotate(m.angular),
@@ -43,7 +43,7 @@ impl<T: Scalar> Placement<T> {
     }
 
     /// A force given at the child's origin, at the parent's origin and in parent axes: (R f, R n + p × R f).
-    #[inline]
+    #[inline(always)]
     pub fn force_to_parent(&self, f: Force<T>) -> Force<T> {
         let linear = self.rotation * f.linear;
         Force { linear, angular: self.rotation * f.angular + self.translation.cross(linear) }
@@ -59,7 +59,7 @@ impl<T: Scalar> Default for Placement<T> {
 /// The pose of a grandchild: (R₁ R₂, R₁ p₂ + p₁).
 impl<T: Scalar> Mul for Placement<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn mul(self, child: Self) -> Self {
         Self { rotation: self.rotation * child.rotation, translation: self.point(child.translation) }
     }

@@ -16,13 +16,14 @@ impl<T: Scalar> Rotation<T> {
         Self([[T::ONE, T::ZERO, T::ZERO], [T::ZERO, T::ONE, T::ZERO], [T::ZERO, T::ZERO, T::ONE]]);
 
     /// A constant rotation (the same in every state).
-    #[inline]
+    #[inline(always)]
     pub fn from_f64(r: &Rotation<f64>) -> Self {
-        Self(r.0.map(|row| row.map(T::from_f64)))
+        let [r0, r1, r2] = r.rows();
+        Self([Vec3::from_f64(r0).0, Vec3::from_f64(r1).0, Vec3::from_f64(r2).0])
     }
 
     /// Rodrigues' formula R = I + sin q \[e\]× + (1 − cos q) \[e\]×² for a unit vector `axis` and an angle in rad.
-    #[inline]
+    #[inline(always)]
     pub fn from_axis_angle(axis: Vec3<T>, angle: T) -> Self {
         let (s, c) = angle.sin_cos();
         let [x, y, z] = axis.0;
@@ -37,7 +38,7 @@ impl<T: Scalar> Rotation<T> {
 
     /// R = 1 + 2 w \[u\]× + 2 \[u\]×² for the quaternion (u, w) = `components`/|`components`|, in the order x, y, z, w: any length but
     /// 0 gives a rotation, length 0 gives NaN.
-    #[inline]
+    #[inline(always)]
     pub fn from_quaternion_components([x, y, z, w]: [T; 4]) -> Self {
         let square = w.times_plus(w, z.times_plus(z, y.times_plus(y, x * x)));
         let scale = T::from_f64(2.0) / square;
@@ -53,41 +54,40 @@ impl<T: Scalar> Rotation<T> {
     }
 
     /// R · Rz(angle) from the sine and cosine of the angle; the third column stays.
-    #[inline]
+    #[inline(always)]
     pub fn turned_about_z(&self, sin: T, cos: T) -> Self {
-        let turned = |[a, b, c]: [T; 3]| [a.times_plus(cos, b * sin), b.times_plus(cos, -(a * sin)), c];
         let [r0, r1, r2] = self.0;
-        Self([turned(r0), turned(r1), turned(r2)])
+        Self([row_about_z(r0, sin, cos), row_about_z(r1, sin, cos), row_about_z(r2, sin, cos)])
     }
 
     /// The rows, as vectors.
-    #[inline]
+    #[inline(always)]
     pub fn rows(&self) -> [Vec3<T>; 3] {
         let [r0, r1, r2] = self.0;
         [Vec3(r0), Vec3(r1), Vec3(r2)]
     }
 
     /// The third column: the z axis of the child frame in the parent frame.
-    #[inline]
+    #[inline(always)]
     pub fn z_axis(&self) -> Vec3<T> {
         Vec3([self.0[0][2], self.0[1][2], self.0[2][2]])
     }
 
     /// Column `k`: axis `k` of the child frame in the parent frame.
-    #[inline]
+    #[inline(always)]
     pub fn column(&self, k: usize) -> Vec3<T> {
         Vec3([self.0[0][k], self.0[1][k], self.0[2][k]])
     }
 
     /// Rᵀ, the inverse.
-    #[inline]
+    #[inline(always)]
     pub fn transpose(&self) -> Self {
         let m = &self.0;
         Self([[m[0][0], m[1][0], m[2][0]], [m[0][1], m[1][1], m[2][1]], [m[0][2], m[1][2], m[2][2]]])
     }
 
     /// Rᵀ v: from parent components to child components.
-    #[inline]
+    #[inline(always)]
     pub fn unrotate(&self, v: Vec3<T>) -> Vec3<T> {
         let ([x, y, z], m) = (v.0, &self.0);
         Vec3([
@@ -96,6 +96,25 @@ impl<T: Scalar> Rotation<T> {
             m[2][2].times_plus(z, m[1][2].times_plus(y, m[0][2] * x)),
         ])
     }
+}
+
+// Functions, since closures are not always inlined.
+
+/// A row of R times Rz.
+#[inline(always)]
+fn row_about_z<T: Scalar>([a, b, c]: [T; 3], sin: T, cos: T) -> [T; 3] {
+    [a.times_plus(cos, b * sin), b.times_plus(cos, -(a * sin)), c]
+}
+
+/// A row times a matrix.
+#[inline(always)]
+fn row_times<T: Scalar>([a, b, c]: [T; 3], other: &Rotation<T>) -> [T; 3] {
+    let [x, y, z] = other.0;
+    [
+        c.times_plus(z[0], b.times_plus(y[0], a * x[0])),
+        c.times_plus(z[1], b.times_plus(y[1], a * x[1])),
+        c.times_plus(z[2], b.times_plus(y[2], a * x[2])),
+    ]
 }
 
 impl Rotation<f64> {
@@ -147,7 +166,7 @@ impl<T: Scalar> Default for Rotation<T> {
 
 impl<T: Scalar> Mul<Vec3<T>> for Rotation<T> {
     type Output = Vec3<T>;
-    #[inline]
+    #[inline(always)]
     fn mul(self, v: Vec3<T>) -> Vec3<T> {
         let [r0, r1, r2] = self.rows();
         Vec3([r0.dot(v), r1.dot(v), r2.dot(v)])
@@ -156,13 +175,9 @@ impl<T: Scalar> Mul<Vec3<T>> for Rotation<T> {
 
 impl<T: Scalar> Mul for Rotation<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        // Written out, since calls of closures over arrays are not always inlined.
-        let o = &other.0;
-        let entry = |[a, b, c]: [T; 3], k: usize| c.times_plus(o[2][k], b.times_plus(o[1][k], a * o[0][k]));
-        let row = |r: [T; 3]| [entry(r, 0), entry(r, 1), entry(r, 2)];
         let [r0, r1, r2] = self.0;
-        Self([row(r0), row(r1), row(r2)])
+        Self([row_times(r0, &other), row_times(r1, &other), row_times(r2, &other)])
     }
 }

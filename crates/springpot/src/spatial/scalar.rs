@@ -6,8 +6,26 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 mod sincos;
 
 mod sealed {
-    pub trait Sealed {}
-    impl Sealed for f64 {}
+    use crate::spatial::columns::ColumnWork;
+
+    pub trait Sealed: Sized {
+        /// Works on rows of numbers, so many columns at a time as the processor can; lanes are as wide as that already.
+        fn in_columns(work: impl ColumnWork<Self>);
+    }
+
+    impl Sealed for f64 {
+        fn in_columns(work: impl ColumnWork<Self>) {
+            crate::spatial::dispatch::in_columns(work);
+        }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    impl<R: crate::spatial::lanes::Register> Sealed for crate::spatial::lanes::Lanes<R> {
+        #[inline(always)]
+        fn in_columns(work: impl ColumnWork<Self>) {
+            work.run::<Self>();
+        }
+    }
 }
 
 /// A number of the rigid-body algorithms: one state's `f64`, or several states side by side.
@@ -46,7 +64,7 @@ pub trait Scalar:
     fn sin_cos(self) -> (Self, Self);
 
     /// The sines and cosines of many angles in radians; slices of one length.
-    #[inline]
+    #[inline(always)]
     fn sin_cos_each(angles: &[Self], sines: &mut [Self], cosines: &mut [Self]) {
         for ((angle, sine), cosine) in angles.iter().zip(sines).zip(cosines) {
             (*sine, *cosine) = angle.sin_cos();
@@ -54,7 +72,7 @@ pub trait Scalar:
     }
 
     /// self · factor + term, in one rounding or two as suits the type.
-    #[inline]
+    #[inline(always)]
     fn times_plus(self, factor: Self, term: Self) -> Self {
         self * factor + term
     }
@@ -64,22 +82,22 @@ impl Scalar for f64 {
     const ZERO: Self = 0.0;
     const ONE: Self = 1.0;
 
-    #[inline]
+    #[inline(always)]
     fn from_f64(x: f64) -> Self {
         x
     }
 
-    #[inline]
+    #[inline(always)]
     fn sqrt(self) -> Self {
         f64::sqrt(self)
     }
 
-    #[inline]
+    #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         if self.abs() <= sincos::LARGEST { sincos::sin_cos(self) } else { f64::sin_cos(self) }
     }
 
-    #[inline]
+    #[inline(always)]
     fn sin_cos_each(angles: &[Self], sines: &mut [Self], cosines: &mut [Self]) {
         // Without the branch of `sin_cos` the compiler takes several angles at a time.
         for ((&angle, sine), cosine) in angles.iter().zip(&mut *sines).zip(&mut *cosines) {
@@ -92,7 +110,7 @@ impl Scalar for f64 {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn times_plus(self, factor: Self, term: Self) -> Self {
         if cfg!(target_feature = "fma") { self.mul_add(factor, term) } else { self * factor + term }
     }

@@ -28,32 +28,38 @@ impl<T: Scalar> Symmetric3<T> {
     pub const ZERO: Self = Self { xx: T::ZERO, yy: T::ZERO, zz: T::ZERO, xy: T::ZERO, xz: T::ZERO, yz: T::ZERO };
 
     /// A constant matrix (the same in every state).
-    #[inline]
+    #[inline(always)]
     pub fn from_f64(s: &Symmetric3<f64>) -> Self {
-        let c = T::from_f64;
-        Self { xx: c(s.xx), yy: c(s.yy), zz: c(s.zz), xy: c(s.xy), xz: c(s.xz), yz: c(s.yz) }
+        Self {
+            xx: T::from_f64(s.xx),
+            yy: T::from_f64(s.yy),
+            zz: T::from_f64(s.zz),
+            xy: T::from_f64(s.xy),
+            xz: T::from_f64(s.xz),
+            yz: T::from_f64(s.yz),
+        }
     }
 
     /// The upper triangle of `m`, row-major.
-    #[inline]
+    #[inline(always)]
     pub fn from_upper(m: [[T; 3]; 3]) -> Self {
         Self { xx: m[0][0], yy: m[1][1], zz: m[2][2], xy: m[0][1], xz: m[0][2], yz: m[1][2] }
     }
 
     /// All nine entries, row-major.
-    #[inline]
+    #[inline(always)]
     pub fn to_matrix(self) -> [[T; 3]; 3] {
         [[self.xx, self.xy, self.xz], [self.xy, self.yy, self.yz], [self.xz, self.yz, self.zz]]
     }
 
     /// Sum of the diagonal.
-    #[inline]
+    #[inline(always)]
     pub fn trace(self) -> T {
         self.xx + self.yy + self.zz
     }
 
     /// R S Rᵀ: the same tensor in the axes into which `r` leads.
-    #[inline]
+    #[inline(always)]
     pub fn rotated(self, r: &Rotation<T>) -> Self {
         let [r0, r1, r2] = r.rows();
         let (s0, s1, s2) = (self * r0, self * r1, self * r2);
@@ -61,7 +67,7 @@ impl<T: Scalar> Symmetric3<T> {
     }
 
     /// ½ tr(S) I − S: from the inertia tensor ∫ (r² I − r rᵀ) dm to the second moments of mass ∫ r rᵀ dm.
-    #[inline]
+    #[inline(always)]
     pub fn second_moments(self) -> Self {
         let half = self.trace() * T::from_f64(0.5);
         Self { xx: half - self.xx, yy: half - self.yy, zz: half - self.zz, xy: -self.xy, xz: -self.xz, yz: -self.yz }
@@ -70,7 +76,7 @@ impl<T: Scalar> Symmetric3<T> {
 
 impl<T: Scalar> Mul<Vec3<T>> for Symmetric3<T> {
     type Output = Vec3<T>;
-    #[inline]
+    #[inline(always)]
     fn mul(self, v: Vec3<T>) -> Vec3<T> {
         let [x, y, z] = v.0;
         Vec3([
@@ -83,7 +89,7 @@ impl<T: Scalar> Mul<Vec3<T>> for Symmetric3<T> {
 
 impl<T: Scalar> Add for Symmetric3<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, o: Self) -> Self {
         Self {
             xx: self.xx + o.xx,
@@ -97,7 +103,7 @@ impl<T: Scalar> Add for Symmetric3<T> {
 }
 
 impl<T: Scalar> AddAssign for Symmetric3<T> {
-    #[inline]
+    #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }

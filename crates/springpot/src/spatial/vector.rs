@@ -14,40 +14,41 @@ impl<T: Scalar> Vec3<T> {
     pub const ZERO: Self = Self([T::ZERO; 3]);
 
     /// The vector with the given components.
-    #[inline]
+    #[inline(always)]
     pub fn new(x: T, y: T, z: T) -> Self {
         Self([x, y, z])
     }
 
     /// A constant vector (the same in every state).
-    #[inline]
+    #[inline(always)]
     pub fn from_f64(v: Vec3<f64>) -> Self {
-        Self(v.0.map(T::from_f64))
+        let [x, y, z] = v.0;
+        Self([T::from_f64(x), T::from_f64(y), T::from_f64(z)])
     }
 
     /// Scalar product.
-    #[inline]
+    #[inline(always)]
     pub fn dot(self, other: Self) -> T {
         let ([a0, a1, a2], [b0, b1, b2]) = (self.0, other.0);
         a2.times_plus(b2, a1.times_plus(b1, a0 * b0))
     }
 
     /// Vector product self × other.
-    #[inline]
+    #[inline(always)]
     pub fn cross(self, other: Self) -> Self {
         let ([a0, a1, a2], [b0, b1, b2]) = (self.0, other.0);
         Self([a1.times_plus(b2, -(a2 * b1)), a2.times_plus(b0, -(a0 * b2)), a0.times_plus(b1, -(a1 * b0))])
     }
 
     /// self · factor + term.
-    #[inline]
+    #[inline(always)]
     pub fn times_plus(self, factor: T, term: Self) -> Self {
         let ([a0, a1, a2], [t0, t1, t2]) = (self.0, term.0);
         Self([a0.times_plus(factor, t0), a1.times_plus(factor, t1), a2.times_plus(factor, t2)])
     }
 
     /// Euclidean length.
-    #[inline]
+    #[inline(always)]
     pub fn norm(self) -> T {
         self.dot(self).sqrt()
     }
@@ -61,7 +62,7 @@ impl Vec3<f64> {
 }
 
 impl<T> From<[T; 3]> for Vec3<T> {
-    #[inline]
+    #[inline(always)]
     fn from(components: [T; 3]) -> Self {
         Self(components)
     }
@@ -69,7 +70,7 @@ impl<T> From<[T; 3]> for Vec3<T> {
 
 impl<T: Scalar> Add for Vec3<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         Self([self.0[0] + other.0[0], self.0[1] + other.0[1], self.0[2] + other.0[2]])
     }
@@ -77,7 +78,7 @@ impl<T: Scalar> Add for Vec3<T> {
 
 impl<T: Scalar> Sub for Vec3<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         Self([self.0[0] - other.0[0], self.0[1] - other.0[1], self.0[2] - other.0[2]])
     }
@@ -85,7 +86,7 @@ impl<T: Scalar> Sub for Vec3<T> {
 
 impl<T: Scalar> Neg for Vec3<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn neg(self) -> Self {
         let [x, y, z] = self.0;
         Self([-x, -y, -z])
@@ -94,7 +95,7 @@ impl<T: Scalar> Neg for Vec3<T> {
 
 impl<T: Scalar> Mul<T> for Vec3<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn mul(self, factor: T) -> Self {
         let [x, y, z] = self.0;
         Self([x * factor, y * factor, z * factor])
@@ -102,14 +103,14 @@ impl<T: Scalar> Mul<T> for Vec3<T> {
 }
 
 impl<T: Scalar> AddAssign for Vec3<T> {
-    #[inline]
+    #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
 impl<T: Scalar> SubAssign for Vec3<T> {
-    #[inline]
+    #[inline(always)]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }

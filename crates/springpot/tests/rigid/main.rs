@@ -3,6 +3,7 @@
 mod derivatives;
 mod identities;
 mod joints;
+mod lanes;
 mod long_chain;
 mod manifold;
 mod oracle;

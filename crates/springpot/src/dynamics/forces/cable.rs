@@ -2,7 +2,7 @@
 
 use super::coordinate::Coordinate;
 use super::line::Line;
-use super::pair::{Pair, pair_with};
+use super::pair::{Pair, add_gradient};
 use crate::dynamics::kinematics::Kinematics;
 use crate::model::{Model, Site};
 use crate::spatial::{Scalar, Vec3};
@@ -14,7 +14,7 @@ pub(crate) struct CableLength<'a>(pub(crate) &'a [Site]);
 
 impl CableLength<'_> {
     /// Hands every segment, and whether it is rigid, to `visit` and adds ∂y/∂q to `gradient` (nv); needs velocities.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn read<T: Scalar>(
         self,
         model: &Model,
@@ -23,14 +23,14 @@ impl CableLength<'_> {
         mut visit: impl FnMut(Pair<T>, bool),
     ) {
         for two in self.0.windows(2) {
-            let pair = pair_with(model, kinematics, &two[0], &two[1], |b, slope| gradient[b] += slope);
+            let pair = add_gradient(model, kinematics, &two[0], &two[1], gradient);
             visit(pair, two[0].link() == two[1].link());
         }
     }
 }
 
 impl<T: Scalar> Coordinate<T> for CableLength<'_> {
-    #[inline]
+    #[inline(always)]
     fn slopes(&self, model: &Model, kinematics: &Kinematics<T>, mut visit: impl FnMut(usize, T)) {
         for two in self.0.windows(2) {
             let line = Line::new(model, kinematics, &two[0], &two[1]);
@@ -38,7 +38,7 @@ impl<T: Scalar> Coordinate<T> for CableLength<'_> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn second_derivatives(
         &self,
         model: &Model,

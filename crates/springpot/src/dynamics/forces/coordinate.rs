@@ -21,7 +21,7 @@ pub(crate) trait Coordinate<T: Scalar> {
 }
 
 /// Writes ∂y/∂q to `gradient` (nv); the rate y' = Σ_b ∂y/∂q_b v_b. Needs velocities.
-#[inline]
+#[inline(always)]
 pub(crate) fn gradient_into<T: Scalar>(
     model: &Model,
     kinematics: &Kinematics<T>,
@@ -40,6 +40,7 @@ pub(crate) fn gradient_into<T: Scalar>(
 }
 
 /// Writes ∂²y to `hessian` (nv × nv, row-major): entry (a, b) is ∂(∂y/∂q_a)/∂q_b. Needs positions.
+#[inline(always)]
 pub(crate) fn hessian_into<T: Scalar>(
     model: &Model,
     kinematics: &Kinematics<T>,
@@ -55,7 +56,7 @@ pub(crate) fn hessian_into<T: Scalar>(
 }
 
 /// Adds F ∂y/∂q_b = −Q_b of a force F along y to `tau` (nv); needs positions.
-#[inline]
+#[inline(always)]
 pub(crate) fn add_force<T: Scalar>(
     model: &Model,
     kinematics: &Kinematics<T>,
@@ -70,6 +71,7 @@ pub(crate) fn add_force<T: Scalar>(
 /// F, ∂F/∂y and ∂F/∂y' in `pull`; needs velocities.
 ///
 /// y' = Σ_a ∂_a y v_a, so that ∂_c y' = Σ_a ∂²y/∂q_a∂q_c v_a.
+#[inline(always)]
 pub(crate) fn add_stiffness<T: Scalar>(
     model: &Model,
     kinematics: &Kinematics<T>,

@@ -17,7 +17,7 @@ pub(in crate::dynamics) struct Line<'a, T> {
 }
 
 impl<'a, T: Scalar> Line<'a, T> {
-    #[inline]
+    #[inline(always)]
     pub(in crate::dynamics) fn new(model: &Model, kinematics: &Kinematics<T>, from: &'a Site, to: &'a Site) -> Self {
         let line = kinematics.position(to) - kinematics.position(from);
         let length = line.norm();
@@ -26,14 +26,14 @@ impl<'a, T: Scalar> Line<'a, T> {
     }
 
     /// The degrees of freedom that move one end and not the other.
-    #[inline]
+    #[inline(always)]
     pub(in crate::dynamics) fn degrees<'m>(&self, model: &'m Model) -> impl Iterator<Item = usize> + 'm {
         let path = |site: &Site| joint::path_to(model, site.link(), self.common);
         path(self.from).chain(path(self.to))
     }
 
     /// Hands ∂l/∂q_b to `visit`, degree by degree.
-    #[inline]
+    #[inline(always)]
     pub(in crate::dynamics) fn slopes(
         &self,
         model: &Model,
@@ -53,21 +53,19 @@ impl<'a, T: Scalar> Line<'a, T> {
     }
 
     /// Fills t_k = ∂l_vec/∂q_k of [`Line::degrees`]; other columns stay as they are.
-    #[inline]
+    #[inline(always)]
     pub(in crate::dynamics) fn fill_columns(&self, model: &Model, kinematics: &Kinematics<T>, columns: &mut [Vec3<T>]) {
-        let mut fill = |site: &Site, sign: T| {
+        for (site, sign) in [(self.from, -T::ONE), (self.to, T::ONE)] {
             let point = kinematics.position(site);
             for k in joint::path_to(model, site.link(), self.common) {
                 let degree = &model.degrees()[k];
                 columns[k] = joint::point_column(model, degree, kinematics.link(degree.link), point) * sign;
             }
-        };
-        fill(self.from, -T::ONE);
-        fill(self.to, T::ONE);
+        }
     }
 
     /// Hands ∂(∂l/∂q_a)/∂q_b = (t_a·t_b − ∂_a l ∂_b l)/l + u·∂t_a/∂q_b to `visit` for every ordered two of [`Line::degrees`].
-    #[inline]
+    #[inline(always)]
     pub(in crate::dynamics) fn second_derivatives(
         &self,
         model: &Model,

@@ -69,6 +69,7 @@ pub struct PairForce<T = f64> {
 ///
 /// `gradient` is nv, m/rad or 1, and exactly 0 for joints that carry both points or neither; needs velocities. Where the
 /// points coincide, rate, direction and gradient are NaN: call [`Pair::check`].
+#[inline(always)]
 pub fn pair_into<T: Scalar>(
     model: &Model,
     kinematics: &Kinematics<T>,
@@ -78,17 +79,17 @@ pub fn pair_into<T: Scalar>(
 ) -> Pair<T> {
     let gradient = &mut gradient[..model.nv()];
     gradient.fill(T::ZERO);
-    pair_with(model, kinematics, from, to, |b, slope| gradient[b] += slope)
+    add_gradient(model, kinematics, from, to, gradient)
 }
 
-/// [`pair_into`] with ∂l/∂q_b for `visit`, degree by degree.
-#[inline]
-pub(in crate::dynamics) fn pair_with<T: Scalar>(
+/// [`pair_into`], added to what `gradient` holds.
+#[inline(always)]
+pub(in crate::dynamics) fn add_gradient<T: Scalar>(
     model: &Model,
     kinematics: &Kinematics<T>,
     from: &Site,
     to: &Site,
-    mut visit: impl FnMut(usize, T),
+    gradient: &mut [T],
 ) -> Pair<T> {
     let v = kinematics.joint_velocities();
     let (start, end) = (kinematics.position(from), kinematics.position(to));
@@ -101,7 +102,7 @@ pub(in crate::dynamics) fn pair_with<T: Scalar>(
         for k in joint::path_to(model, site.link(), common) {
             let degree = &model.degrees()[k];
             let slope = towards.dot(joint::point_column(model, degree, kinematics.link(degree.link), point));
-            visit(degree.index, slope);
+            gradient[degree.index] += slope;
             rate = slope.times_plus(v[degree.index], rate);
         }
     }
@@ -125,6 +126,7 @@ pub fn pair<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, from: &Site, t
 /// where the last term stands for two degrees that carry the same end alone: ±u·(Om_lo × T_hi), lo the inner one, or
 /// ±u·(Om_b × T_a) where both belong to one joint. `hessian` is nv × nv, row-major (all entries are written), and symmetric but
 /// for the degrees of one floating joint, whose tangent vectors do not commute; needs positions. NaN where the points coincide.
+#[inline(always)]
 pub fn pair_hessian_into<T: Scalar>(
     model: &Model,
     kinematics: &Kinematics<T>,
@@ -137,6 +139,7 @@ pub fn pair_hessian_into<T: Scalar>(
 }
 
 /// [`pair_hessian_into`] in the rows and columns of the velocities that move; what is not asked for is 0.
+#[inline(always)]
 pub(crate) fn pair_hessian_of_moving<T: Scalar>(
     model: &Model,
     kinematics: &Kinematics<T>,
@@ -165,13 +168,14 @@ pub fn pair_hessian<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, from: 
 }
 
 /// The force on the first anchor of a pair, world axes: tension pulls `from` towards `to`. NaN where the points coincide.
-#[inline]
-pub(in crate::dynamics) fn pull<T: Scalar>(pair: &PairForce<T>, position: impl Fn(&Site) -> Vec3<T>) -> Vec3<T> {
-    let line = position(&pair.to) - position(&pair.from);
+#[inline(always)]
+pub(in crate::dynamics) fn pull<T: Scalar>(pair: &PairForce<T>, from: Vec3<T>, to: Vec3<T>) -> Vec3<T> {
+    let line = to - from;
     line * (pair.force / line.norm())
 }
 
 /// Adds the generalized force Q_b = −F ∂l/∂q_b of a tension F to `q_force` (nv), N·m or N.
+#[inline(always)]
 pub fn add_generalized_force<T: Scalar>(force: T, gradient: &[T], q_force: &mut [T]) {
     for (q, &d) in q_force.iter_mut().zip(gradient) {
         *q -= force * d;

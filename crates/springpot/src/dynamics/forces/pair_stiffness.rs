@@ -10,6 +10,7 @@ use crate::spatial::Scalar;
 /// Adds −∂Q_b/∂q_c = F ∂²l/∂q_b∂q_c + ∂_b l (∂F/∂l ∂_c l + ∂F/∂l' ∂_c l') to `d_q` and −∂Q_b/∂v_c = ∂_b l ∂F/∂l' ∂_c l to `d_v`.
 ///
 /// l' = Σ_a ∂_a l v_a, so that ∂_c l' = Σ_a ∂²l/∂q_a∂q_c v_a.
+#[inline(always)]
 pub(in crate::dynamics) fn add_pair_stiffness<T: Scalar>(
     model: &Model,
     kinematics: &Kinematics<T>,

@@ -64,7 +64,7 @@ impl RelativeCoordinate {
 /// φ̇ = J_l⁻¹(φ) R_fromᵀ(ω_to − ω_from), so that ∂_k y = ±c·Om_k with c = R_from J_l⁻ᵀ(φ) e. Signs: + where k carries `to`, − where it
 /// carries `from`.
 impl Coordinate<f64> for RelativeCoordinate {
-    #[inline]
+    #[inline(always)]
     fn slopes(&self, model: &Model, kinematics: &Kinematics, mut visit: impl FnMut(usize, f64)) {
         let Seen { point, direction, turn, common } = self.see(model, kinematics);
         for (k, sign) in self.degrees(model, common) {
@@ -80,7 +80,7 @@ impl Coordinate<f64> for RelativeCoordinate {
 
     /// Shifts: e·(Om_lo × t_hi) where both degrees carry `to`, e·(Om_hi × t_lo) where both carry `from`, −e·(Om_from × t_to)
     /// otherwise. Turns: s_a s_b e·(DJ_l⁻¹(φ)[J_l⁻¹ w_b] w_a) with w = R_fromᵀ Om, and what ∂w_a/∂q_b adds.
-    #[inline]
+    #[inline(always)]
     fn second_derivatives(
         &self,
         model: &Model,

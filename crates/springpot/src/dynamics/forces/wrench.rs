@@ -10,6 +10,7 @@ use crate::spatial::{Force, Scalar};
 ///
 /// The force f, N, acts at the site's point P; f and the moment n, N·m, have world axes. Needs positions. Add it to τ for
 /// forward dynamics; inverse dynamics gives what actuators and loads must supply together, so take it off there.
+#[inline(always)]
 pub fn add_wrench<T: Scalar>(
     model: &Model,
     kinematics: &Kinematics<T>,
@@ -31,6 +32,7 @@ pub fn add_wrench<T: Scalar>(
 ///
 /// With lo the inner and hi the outer of joints b and c: f·(Om_lo × T_hi(P)), and n·(Om_c × Om_b) where c carries b. Needs
 /// positions.
+#[inline(always)]
 pub fn add_wrench_derivative<T: Scalar>(
     model: &Model,
     kinematics: &Kinematics<T>,

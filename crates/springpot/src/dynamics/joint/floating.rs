@@ -4,7 +4,7 @@ use crate::model::Model;
 use crate::spatial::{Force, Motion, Placement, Rotation, Scalar, Vec3};
 
 /// Apart, so that joints of one degree keep a short path.
-#[inline(never)]
+#[inline(always)]
 pub(super) fn placement<T: Scalar>(model: &Model, j: usize, q: &[T]) -> Placement<T> {
     let first = model.coordinates(j).q;
     let q = &q[first..first + 7];
@@ -16,18 +16,18 @@ pub(super) fn placement<T: Scalar>(model: &Model, j: usize, q: &[T]) -> Placemen
 }
 
 /// The velocity (or acceleration) of the joint, in the axes of its link.
-#[inline]
+#[inline(always)]
 pub(super) fn twist<T: Scalar>(v: &[T]) -> Motion<T> {
     let v = &v[..6];
     Motion { linear: Vec3([v[0], v[1], v[2]]), angular: Vec3([v[3], v[4], v[5]]) }
 }
 
-#[inline]
+#[inline(always)]
 pub(super) fn velocity<T: Scalar>(carried: Motion<T>, link: &Rotation<T>, own: Motion<T>) -> Motion<T> {
     carried + own.rotated(link)
 }
 
-#[inline]
+#[inline(always)]
 pub(super) fn acceleration<T: Scalar>(
     carried: Motion<T>,
     omega: Vec3<T>,
@@ -42,7 +42,7 @@ pub(super) fn acceleration<T: Scalar>(
     }
 }
 
-#[inline]
+#[inline(always)]
 pub(super) fn advance<T: Scalar>(
     velocity: &mut Motion<T>,
     acceleration: &mut Motion<T>,
@@ -54,13 +54,13 @@ pub(super) fn advance<T: Scalar>(
     *velocity += own;
 }
 
-#[inline]
+#[inline(always)]
 pub(super) fn write_effort<T: Scalar>(force: Force<T>, tau: &mut [T]) {
     tau[..3].copy_from_slice(&force.linear.0);
     tau[3..6].copy_from_slice(&force.angular.0);
 }
 
-#[inline]
+#[inline(always)]
 pub(super) fn bias<T: Scalar>(velocity: Motion<T>, link: &Rotation<T>, own: Motion<T>) -> Motion<T> {
     velocity.cross(own.rotated(link))
 }

@@ -2,17 +2,17 @@
 
 use crate::spatial::{ArticulatedInertia, Force, Inertia, Motion, Placement, Scalar, Vec3};
 
-#[inline]
+#[inline(always)]
 pub(super) fn placement<T: Scalar>(at_zero: Placement<T>, coordinate: T) -> Placement<T> {
     Placement { translation: at_zero.rotation.z_axis().times_plus(coordinate, at_zero.translation), ..at_zero }
 }
 
-#[inline]
+#[inline(always)]
 pub(super) fn velocity<T: Scalar>(carried: Motion<T>, axis: Vec3<T>, speed: T) -> Motion<T> {
     Motion { linear: axis.times_plus(speed, carried.linear), ..carried }
 }
 
-#[inline]
+#[inline(always)]
 pub(super) fn acceleration<T: Scalar>(
     carried: Motion<T>,
     omega: Vec3<T>,
@@ -24,39 +24,39 @@ pub(super) fn acceleration<T: Scalar>(
     Motion { linear: axis.times_plus(push, gyration.times_plus(twice, carried.linear)), ..carried }
 }
 
-#[inline]
+#[inline(always)]
 pub(super) fn advance<T: Scalar>(velocity: &mut Motion<T>, acceleration: &mut Motion<T>, speed: T, push: T) {
     let [wx, wy, _] = velocity.angular.0;
     velocity.linear.0[2] += speed;
     acceleration.linear += Vec3([wy * speed, -(wx * speed), push]);
 }
 
-#[inline]
+#[inline(always)]
 pub(super) fn effort<T: Scalar>(force: Force<T>) -> T {
     force.linear.0[2]
 }
 
-#[inline]
+#[inline(always)]
 pub(super) fn bias<T: Scalar>(velocity: Motion<T>, sliding: Vec3<T>) -> Motion<T> {
     Motion { angular: Vec3::ZERO, linear: velocity.angular.cross(sliding) }
 }
 
-#[inline]
+#[inline(always)]
 pub(super) fn unit_motion<T: Scalar>(axis: Vec3<T>) -> Motion<T> {
     Motion { angular: Vec3::ZERO, linear: axis }
 }
 
-#[inline]
+#[inline(always)]
 pub(super) fn load<T: Scalar>(inertia: &ArticulatedInertia<T>, unit: Motion<T>) -> Force<T> {
     inertia.times_linear(unit.linear)
 }
 
-#[inline]
+#[inline(always)]
 pub(super) fn momentum<T: Scalar>(inertia: &Inertia<T>, unit: Motion<T>) -> Force<T> {
     inertia.shifted_by(unit.linear)
 }
 
-#[inline]
-pub(super) fn felt<T: Scalar>(unit: Motion<T>, momentum: Force<T>) -> T {
-    unit.linear.dot(momentum.linear)
+#[inline(always)]
+pub(super) fn felt<T: Scalar>(axis: Vec3<T>, momentum: Force<T>) -> T {
+    axis.dot(momentum.linear)
 }

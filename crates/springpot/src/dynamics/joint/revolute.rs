@@ -2,17 +2,17 @@
 
 use crate::spatial::{ArticulatedInertia, Force, Inertia, Motion, Placement, Scalar, Vec3};
 
-#[inline]
+#[inline(always)]
 pub(super) fn placement<T: Scalar>(at_zero: Placement<T>, sine: T, cosine: T) -> Placement<T> {
     Placement { rotation: at_zero.rotation.turned_about_z(sine, cosine), ..at_zero }
 }
 
-#[inline]
+#[inline(always)]
 pub(super) fn velocity<T: Scalar>(carried: Motion<T>, axis: Vec3<T>, speed: T) -> Motion<T> {
     Motion { angular: axis.times_plus(speed, carried.angular), ..carried }
 }
 
-#[inline]
+#[inline(always)]
 pub(super) fn acceleration<T: Scalar>(
     carried: Motion<T>,
     omega: Vec3<T>,
@@ -23,7 +23,7 @@ pub(super) fn acceleration<T: Scalar>(
     Motion { angular: axis.times_plus(push, gyration.times_plus(speed, carried.angular)), ..carried }
 }
 
-#[inline]
+#[inline(always)]
 pub(super) fn advance<T: Scalar>(velocity: &mut Motion<T>, acceleration: &mut Motion<T>, speed: T, push: T) {
     let ([wx, wy, _], [ux, uy, _]) = (velocity.angular.0, velocity.linear.0);
     velocity.angular.0[2] += speed;
@@ -31,42 +31,42 @@ pub(super) fn advance<T: Scalar>(velocity: &mut Motion<T>, acceleration: &mut Mo
     acceleration.linear += Vec3([uy * speed, -(ux * speed), T::ZERO]);
 }
 
-#[inline]
+#[inline(always)]
 pub(super) fn effort<T: Scalar>(force: Force<T>) -> T {
     force.angular.0[2]
 }
 
-#[inline]
+#[inline(always)]
 pub(super) fn bias<T: Scalar>(velocity: Motion<T>, turning: Vec3<T>) -> Motion<T> {
     Motion { angular: velocity.angular.cross(turning), linear: velocity.linear.cross(turning) }
 }
 
-#[inline]
+#[inline(always)]
 pub(super) fn unit_motion<T: Scalar>(axis: Vec3<T>, arm: Vec3<T>) -> Motion<T> {
     Motion { angular: axis, linear: arm.cross(axis) }
 }
 
-#[inline]
+#[inline(always)]
 pub(super) fn point_column<T: Scalar>(axis: Vec3<T>, arm: Vec3<T>) -> Vec3<T> {
     axis.cross(arm)
 }
 
-#[inline]
+#[inline(always)]
 pub(super) fn point_column_rate<T: Scalar>(axis: Vec3<T>, rate: Vec3<T>, arm: Vec3<T>, arm_rate: Vec3<T>) -> Vec3<T> {
     rate.cross(arm) + axis.cross(arm_rate)
 }
 
-#[inline]
+#[inline(always)]
 pub(super) fn load<T: Scalar>(inertia: &ArticulatedInertia<T>, unit: Motion<T>) -> Force<T> {
     inertia.times_angular(unit.angular)
 }
 
-#[inline]
+#[inline(always)]
 pub(super) fn momentum<T: Scalar>(inertia: &Inertia<T>, unit: Motion<T>) -> Force<T> {
     inertia.turned_by(unit.angular)
 }
 
-#[inline]
-pub(super) fn felt<T: Scalar>(unit: Motion<T>, arm: Vec3<T>, momentum: Force<T>) -> T {
-    unit.angular.dot(momentum.angular + arm.cross(momentum.linear))
+#[inline(always)]
+pub(super) fn felt<T: Scalar>(axis: Vec3<T>, momentum: Force<T>) -> T {
+    axis.dot(momentum.angular)
 }

@@ -4,7 +4,7 @@ use crate::model::Model;
 use crate::spatial::{Force, Motion, Placement, Rotation, Scalar, Vec3};
 
 /// Apart, so that joints of one degree keep a short path.
-#[inline(never)]
+#[inline(always)]
 pub(super) fn placement<T: Scalar>(model: &Model, j: usize, q: &[T]) -> Placement<T> {
     let first = model.coordinates(j).q;
     let q = &q[first..first + 4];
@@ -13,13 +13,13 @@ pub(super) fn placement<T: Scalar>(model: &Model, j: usize, q: &[T]) -> Placemen
 }
 
 /// The velocity (or acceleration) of the joint, in the axes of its link.
-#[inline]
+#[inline(always)]
 pub(super) fn twist<T: Scalar>(v: &[T]) -> Motion<T> {
     let v = &v[..3];
     Motion { linear: Vec3::ZERO, angular: Vec3([v[0], v[1], v[2]]) }
 }
 
-#[inline]
+#[inline(always)]
 pub(super) fn write_effort<T: Scalar>(force: Force<T>, tau: &mut [T]) {
     tau[..3].copy_from_slice(&force.angular.0);
 }

@@ -26,6 +26,10 @@ pub(in crate::model) struct DegreeTree {
     pub(in crate::model) last_degrees: Vec<usize>,
     /// One more than the velocity that the elimination of velocity i touches next, or 0.
     pub(in crate::model) pivots: Vec<usize>,
+    /// One more than the last velocity whose elimination touches velocity i, itself among them.
+    pub(in crate::model) ends: Vec<usize>,
+    /// Whether all velocities up to there do.
+    pub(in crate::model) is_depth_first: bool,
 }
 
 /// What moves with the links, one entry per joint.
@@ -89,6 +93,27 @@ impl Drivetrain {
 impl DegreeTree {
     /// That of the world alone.
     pub(in crate::model) fn of_the_world() -> Self {
-        Self { degrees: Vec::new(), carriers: Vec::new(), last_degrees: vec![0], pivots: Vec::new() }
+        Self {
+            degrees: Vec::new(),
+            carriers: Vec::new(),
+            last_degrees: vec![0],
+            pivots: Vec::new(),
+            ends: Vec::new(),
+            is_depth_first: true,
+        }
+    }
+
+    /// Works out what lies beyond each velocity from the pivots.
+    pub(in crate::model) fn collect_ends(&mut self) {
+        let n = self.pivots.len();
+        let mut counts = vec![1; n];
+        self.ends = (1..=n).collect();
+        for k in (0..n).rev() {
+            if let Some(inner) = self.pivots[k].checked_sub(1) {
+                counts[inner] += counts[k];
+                self.ends[inner] = self.ends[inner].max(self.ends[k]);
+            }
+        }
+        self.is_depth_first = (0..n).all(|i| self.ends[i] - i == counts[i]);
     }
 }

@@ -14,7 +14,7 @@ const ROUND: f64 = 6_755_399_441_055_744.0;
 /// (sin x, cos x) for |x| ≤ [`LARGEST`], to 2e-16 absolutely; NaN for NaN.
 ///
 /// x = k π/2 + r with |r| ≤ π/4, then the Taylor series of both, to r¹⁷/17! and r¹⁶/16!; truncation stays below 1e-17.
-#[inline]
+#[inline(always)]
 pub(super) fn sin_cos(x: f64) -> (f64, f64) {
     let shifted = x * TWO_OVER_PI + ROUND;
     let k = shifted - ROUND;
