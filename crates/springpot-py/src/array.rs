@@ -168,9 +168,19 @@ impl Sink {
     /// No other reference to this row is alive.
     #[inline]
     pub(crate) unsafe fn row<'a>(&self, row: usize) -> &'a mut [f64] {
-        assert!(row < self.count);
-        // SAFETY: the rows lie one after the other in an array that was made or checked so; the caller has the row alone.
-        unsafe { std::slice::from_raw_parts_mut(self.data.add(row * self.width), self.width) }
+        // SAFETY: as the caller says.
+        unsafe { self.rows(row, row + 1) }
+    }
+
+    /// Rows `from` to `to`, one after the other.
+    ///
+    /// # Safety
+    /// No other reference to these rows is alive.
+    #[inline]
+    pub(crate) unsafe fn rows<'a>(&self, from: usize, to: usize) -> &'a mut [f64] {
+        assert!(from <= to && to <= self.count);
+        // SAFETY: the rows lie one after the other in an array that was made or checked so; the caller has these alone.
+        unsafe { std::slice::from_raw_parts_mut(self.data.add(from * self.width), (to - from) * self.width) }
     }
 }
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import pickle
+import subprocess
+import sys
 import threading
 from typing import Any
 
@@ -44,6 +47,11 @@ def close(found: Any, wanted: Any) -> None:
     wanted = np.asarray(wanted, dtype=float)
     assert np.shape(found) == wanted.shape
     np.testing.assert_allclose(found, wanted, rtol=1e-9, atol=1e-10 * max(1.0, float(np.abs(wanted).max(initial=0.0))))
+
+
+def few_ulps(many: Any, one: Any) -> None:
+    """Rows are worked out side by side, with products and sums in one rounding."""
+    np.testing.assert_allclose(many, one, rtol=0, atol=1e-12 * max(1.0, float(np.abs(one).max(initial=0.0))))
 
 
 @pytest.mark.parametrize("name", ROBOTS)
@@ -139,7 +147,7 @@ def test_many_states_are_each_state(name: str, method: str, arguments: str) -> N
     for k in range(0, 700, 97):
         alone = as_tuple(call(*(of[key][k] for key in arguments)))
         for many, one in zip(together, alone):
-            assert np.array_equal(many[k], one)
+            few_ulps(many[k], one)
     # Strided, reversed, Fortran order, read-only: the same bits.
     wide = {key: np.repeat(value, 2, axis=1) for key, value in of.items()}
     frozen = {key: value.copy() for key, value in of.items()}
@@ -163,7 +171,24 @@ def test_many_states_are_each_state(name: str, method: str, arguments: str) -> N
 def test_one_dimension_goes_with_every_row(ur5: sp.Model) -> None:
     q, v, a = states(ur5, 5)
     mixed = ur5.rnea(q, v[0], a)
-    assert np.array_equal(mixed, np.array([ur5.rnea(q[k], v[0], a[k]) for k in range(5)]))
+    few_ulps(mixed, np.array([ur5.rnea(q[k], v[0], a[k]) for k in range(5)]))
+    assert np.array_equal(mixed, ur5.rnea(q, np.repeat(v[:1], 5, axis=0), a))
+
+
+def test_levels_of_simd() -> None:
+    program = """
+import sys, numpy as np, springpot as sp
+arm = sp.Model.from_urdf(sys.argv[1])
+q = arm.random(3, 21)
+still = np.zeros_like(q)
+print(np.array_equal(arm.rnea(q, still, still), [arm.rnea(one, still[0], still[0]) for one in q]))
+"""
+    urdf = str(ROOT / "testdata" / "multibody" / "ur5.urdf")
+    run = [sys.executable, "-c", program, urdf]
+    alone = subprocess.run(run, env={**os.environ, "SPRINGPOT_SIMD": "baseline"}, capture_output=True, text=True, check=True)
+    assert alone.stdout.strip() == "True"
+    refused = subprocess.run(run, env={**os.environ, "SPRINGPOT_SIMD": "sse"}, capture_output=True, text=True, check=False)
+    assert 'ValueError: SPRINGPOT_SIMD is "sse"; it must be baseline, avx2 or avx512' in refused.stderr
 
 
 def test_out(ur5: sp.Model) -> None:
@@ -298,10 +323,11 @@ def test_models_are_sent_to_other_processes(tmp_path: Any) -> None:
 def test_threads_share_a_model(ur5: sp.Model) -> None:
     q, v, a = states(ur5, 300)
     wanted, wrong = ur5.rnea(q, v, a), []
+    alone = [ur5.rnea(q[k], v[k], a[k]) for k in range(300)]
 
     def work() -> None:
         for k in range(300):
-            if not (np.array_equal(ur5.rnea(q, v, a), wanted) and np.array_equal(ur5.rnea(q[k], v[k], a[k]), wanted[k])):
+            if not (np.array_equal(ur5.rnea(q, v, a), wanted) and np.array_equal(ur5.rnea(q[k], v[k], a[k]), alone[k])):
                 wrong.append(k)
 
     threads = [threading.Thread(target=work) for _ in range(4)]

@@ -2,12 +2,13 @@
 
 use super::PyModel;
 use super::batch::Symbol::{Q, V};
-use super::batch::{each, one_result};
+use super::batch::{each, one_by_one, one_result};
 use crate::error::model_error;
 use pyo3::prelude::*;
 use springpot::dynamics::{
-    aba_derivatives_into, aba_into, christoffel_into, com, com_jacobian_into, coriolis_into, crba_into, gravity_into,
-    kinetic_energy, mass_inverse_into, nonlinear_effects_into, potential_energy, rnea_derivatives_into, rnea_into,
+    aba_derivatives_into, aba_into, batch, christoffel_into, com, com_jacobian_into, coriolis_into, crba_into,
+    gravity_into, kinetic_energy, mass_inverse_into, nonlinear_effects_into, potential_energy, rnea_derivatives_into,
+    rnea_into,
 };
 
 type Any<'py> = Bound<'py, PyAny>;
@@ -27,48 +28,83 @@ impl PyModel {
     #[pyo3(signature = (q, v, a, out=None))]
     fn rnea<'py>(&self, q: &Any<'py>, v: &Any<'py>, a: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         let inputs = [(q, Q("q")), (v, V("v")), (a, V("a"))];
-        one_result(&self.core, inputs, &[self.nv()], out, |model, scratch, [q, v, a], tau| {
-            rnea_into(model, q, v, a, &[], &mut scratch.workspace, tau);
-        })
+        one_result(
+            &self.core,
+            inputs,
+            &[self.nv()],
+            out,
+            |m, w, [q, v, a], [tau]| batch::rnea_into(m, w, q, v, a, tau),
+            |model, scratch, [q, v, a], tau| {
+                rnea_into(model, q, v, a, &[], &mut scratch.workspace, tau);
+            },
+        )
     }
 
     /// C(q, v) v + g(q), what the actuators hold without acceleration: shape ``(nv,)``, N·m or N.
     #[pyo3(signature = (q, v, out=None))]
     fn nonlinear_effects<'py>(&self, q: &Any<'py>, v: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         let inputs = [(q, Q("q")), (v, V("v"))];
-        one_result(&self.core, inputs, &[self.nv()], out, |model, scratch, [q, v], tau| {
-            nonlinear_effects_into(model, q, v, &[], &mut scratch.workspace, tau);
-        })
+        one_result(
+            &self.core,
+            inputs,
+            &[self.nv()],
+            out,
+            |m, w, [q, v], [tau]| batch::nonlinear_effects_into(m, w, q, v, tau),
+            |model, scratch, [q, v], tau| {
+                nonlinear_effects_into(model, q, v, &[], &mut scratch.workspace, tau);
+            },
+        )
     }
 
     /// Forward dynamics, a = M⁻¹(tau − C v − g): shape ``(nv,)``, rad/s² or m/s².
     #[pyo3(signature = (q, v, tau, out=None))]
     fn aba<'py>(&self, q: &Any<'py>, v: &Any<'py>, tau: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         let inputs = [(q, Q("q")), (v, V("v")), (tau, V("tau"))];
-        one_result(&self.core, inputs, &[self.nv()], out, |model, scratch, [q, v, tau], a| {
-            scratch.kinematics.update_velocity(model, q, v);
-            aba_into(model, &scratch.kinematics, tau, &[], &mut scratch.workspace, a);
-        })
+        one_result(
+            &self.core,
+            inputs,
+            &[self.nv()],
+            out,
+            |m, w, [q, v, tau], [a]| batch::aba_into(m, w, q, v, tau, a),
+            |model, scratch, [q, v, tau], a| {
+                scratch.kinematics.update_velocity(model, q, v);
+                aba_into(model, &scratch.kinematics, tau, &[], &mut scratch.workspace, a);
+            },
+        )
     }
 
     /// The mass matrix M(q), the basic metric tensor: shape ``(nv, nv)``.
     #[pyo3(signature = (q, out=None))]
     fn crba<'py>(&self, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         let n = self.nv();
-        one_result(&self.core, [(q, Q("q"))], &[n, n], out, |model, scratch, [q], mass| {
-            scratch.kinematics.update_position(model, q);
-            crba_into(model, &scratch.kinematics, &mut scratch.workspace, mass);
-        })
+        one_result(
+            &self.core,
+            [(q, Q("q"))],
+            &[n, n],
+            out,
+            |m, w, [q], [mass]| batch::crba_into(m, w, q, mass),
+            |model, scratch, [q], mass| {
+                scratch.kinematics.update_position(model, q);
+                crba_into(model, &scratch.kinematics, &mut scratch.workspace, mass);
+            },
+        )
     }
 
     /// M(q)⁻¹: shape ``(nv, nv)``.
     #[pyo3(signature = (q, out=None))]
     fn mass_inverse<'py>(&self, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         let n = self.nv();
-        one_result(&self.core, [(q, Q("q"))], &[n, n], out, |model, scratch, [q], inverse| {
-            scratch.kinematics.update_position(model, q);
-            mass_inverse_into(model, &scratch.kinematics, &mut scratch.workspace, &mut scratch.matrix, inverse);
-        })
+        one_result(
+            &self.core,
+            [(q, Q("q"))],
+            &[n, n],
+            out,
+            |m, w, [q], [inverse]| batch::mass_inverse_into(m, w, q, inverse),
+            |model, scratch, [q], inverse| {
+                scratch.kinematics.update_position(model, q);
+                mass_inverse_into(model, &scratch.kinematics, &mut scratch.workspace, &mut scratch.matrix, inverse);
+            },
+        )
     }
 
     /// The Coriolis matrix C(q, v), with C v the Coriolis and centrifugal forces: shape ``(nv, nv)``.
@@ -77,19 +113,33 @@ impl PyModel {
     #[pyo3(signature = (q, v, out=None))]
     fn coriolis<'py>(&self, q: &Any<'py>, v: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         let (n, inputs) = (self.nv(), [(q, Q("q")), (v, V("v"))]);
-        one_result(&self.core, inputs, &[n, n], out, |model, scratch, [q, v], matrix| {
-            scratch.kinematics.update_velocity(model, q, v);
-            coriolis_into(model, &scratch.kinematics, &mut scratch.workspace, matrix);
-        })
+        one_result(
+            &self.core,
+            inputs,
+            &[n, n],
+            out,
+            |m, w, [q, v], [matrix]| batch::coriolis_into(m, w, q, v, matrix),
+            |model, scratch, [q, v], matrix| {
+                scratch.kinematics.update_velocity(model, q, v);
+                coriolis_into(model, &scratch.kinematics, &mut scratch.workspace, matrix);
+            },
+        )
     }
 
     /// The gravity vector g(q) = ∂V/∂q, the forces that hold the robot: shape ``(nv,)``, N·m or N.
     #[pyo3(signature = (q, out=None))]
     fn gravity<'py>(&self, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
-        one_result(&self.core, [(q, Q("q"))], &[self.nv()], out, |model, scratch, [q], forces| {
-            scratch.kinematics.update_position(model, q);
-            gravity_into(model, &scratch.kinematics, &mut scratch.workspace, forces);
-        })
+        one_result(
+            &self.core,
+            [(q, Q("q"))],
+            &[self.nv()],
+            out,
+            |m, w, [q], [forces]| batch::gravity_into(m, w, q, forces),
+            |model, scratch, [q], forces| {
+                scratch.kinematics.update_position(model, q);
+                gravity_into(model, &scratch.kinematics, &mut scratch.workspace, forces);
+            },
+        )
     }
 
     /// Christoffel symbols of the first kind Γ_ab,c, the force index c last: shape ``(nv, nv, nv)``.
@@ -103,10 +153,17 @@ impl PyModel {
             return Err(model_error(q.py(), why));
         }
         let n = self.nv();
-        one_result(&self.core, [(q, Q("q"))], &[n, n, n], out, |model, scratch, [q], gamma| {
-            scratch.kinematics.update_position(model, q);
-            christoffel_into(model, &scratch.kinematics, &mut scratch.workspace, gamma);
-        })
+        one_result(
+            &self.core,
+            [(q, Q("q"))],
+            &[n, n, n],
+            out,
+            |m, w, [q], [gamma]| batch::christoffel_into(m, w, q, gamma),
+            |model, scratch, [q], gamma| {
+                scratch.kinematics.update_position(model, q);
+                christoffel_into(model, &scratch.kinematics, &mut scratch.workspace, gamma);
+            },
+        )
     }
 
     /// ∂tau/∂q and ∂tau/∂v of :meth:`rnea`, each of shape ``(nv, nv)``: row b belongs to tau_b. ∂tau/∂a is :meth:`crba`.
@@ -119,13 +176,20 @@ impl PyModel {
         out: Option<&Any<'py>>,
     ) -> PyResult<[Any<'py>; 2]> {
         let (n, inputs) = (self.nv(), [(q, Q("q")), (v, V("v")), (a, V("a"))]);
-        each(&self.core, inputs, [&[n, n]; 2], out, |model, scratch, [q, v, a], [by_q, by_v]| {
-            scratch.kinematics.update_velocity(model, q, v);
-            let slopes = &mut scratch.inverse_slopes;
-            rnea_derivatives_into(model, &scratch.kinematics, a, &[], &mut scratch.workspace, slopes);
-            by_q.copy_from_slice(&slopes.d_q);
-            by_v.copy_from_slice(&slopes.d_v);
-        })
+        each(
+            &self.core,
+            inputs,
+            [&[n, n]; 2],
+            out,
+            |m, w, [q, v, a], [by_q, by_v]| batch::rnea_derivatives_into(m, w, q, v, a, by_q, by_v),
+            |model, scratch, [q, v, a], [by_q, by_v]| {
+                scratch.kinematics.update_velocity(model, q, v);
+                let slopes = &mut scratch.inverse_slopes;
+                rnea_derivatives_into(model, &scratch.kinematics, a, &[], &mut scratch.workspace, slopes);
+                by_q.copy_from_slice(&slopes.d_q);
+                by_v.copy_from_slice(&slopes.d_v);
+            },
+        )
     }
 
     /// ∂a/∂q and ∂a/∂v of :meth:`aba`, each of shape ``(nv, nv)``: row b belongs to a_b. ∂a/∂tau is :meth:`mass_inverse`.
@@ -138,58 +202,93 @@ impl PyModel {
         out: Option<&Any<'py>>,
     ) -> PyResult<[Any<'py>; 2]> {
         let (n, inputs) = (self.nv(), [(q, Q("q")), (v, V("v")), (tau, V("tau"))]);
-        each(&self.core, inputs, [&[n, n]; 2], out, |model, scratch, [q, v, tau], [by_q, by_v]| {
-            scratch.kinematics.update_velocity(model, q, v);
-            let slopes = &mut scratch.forward_slopes;
-            aba_derivatives_into(model, &scratch.kinematics, tau, &[], &mut scratch.workspace, slopes);
-            by_q.copy_from_slice(&slopes.d_q);
-            by_v.copy_from_slice(&slopes.d_v);
-        })
+        each(
+            &self.core,
+            inputs,
+            [&[n, n]; 2],
+            out,
+            |m, w, [q, v, tau], [by_q, by_v]| batch::aba_derivatives_into(m, w, q, v, tau, by_q, by_v),
+            |model, scratch, [q, v, tau], [by_q, by_v]| {
+                scratch.kinematics.update_velocity(model, q, v);
+                let slopes = &mut scratch.forward_slopes;
+                aba_derivatives_into(model, &scratch.kinematics, tau, &[], &mut scratch.workspace, slopes);
+                by_q.copy_from_slice(&slopes.d_q);
+                by_v.copy_from_slice(&slopes.d_v);
+            },
+        )
     }
 
     /// The centre of mass of all that moves: shape ``(3,)``, m.
     #[pyo3(signature = (q, out=None))]
     fn com<'py>(&self, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
-        one_result(&self.core, [(q, Q("q"))], &[3], out, |model, scratch, [q], centre| {
-            scratch.kinematics.update_position(model, q);
-            centre.copy_from_slice(&com(model, &scratch.kinematics).0);
-        })
+        one_result(
+            &self.core,
+            [(q, Q("q"))],
+            &[3],
+            out,
+            |m, w, [q], [centre]| batch::com_into(m, w, q, centre),
+            |model, scratch, [q], centre| {
+                scratch.kinematics.update_position(model, q);
+                centre.copy_from_slice(&com(model, &scratch.kinematics).0);
+            },
+        )
     }
 
     /// The Jacobian of the centre of mass: shape ``(3, nv)``.
     #[pyo3(signature = (q, out=None))]
     fn com_jacobian<'py>(&self, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         let n = self.nv();
-        one_result(&self.core, [(q, Q("q"))], &[3, n], out, |model, scratch, [q], jacobian| {
-            scratch.kinematics.update_position(model, q);
-            com_jacobian_into(model, &scratch.kinematics, &mut scratch.workspace, jacobian);
-        })
+        one_result(
+            &self.core,
+            [(q, Q("q"))],
+            &[3, n],
+            out,
+            |m, w, [q], [jacobian]| batch::com_jacobian_into(m, w, q, jacobian),
+            |model, scratch, [q], jacobian| {
+                scratch.kinematics.update_position(model, q);
+                com_jacobian_into(model, &scratch.kinematics, &mut scratch.workspace, jacobian);
+            },
+        )
     }
 
     /// Kinetic energy, J: a float, or shape ``(N,)``.
     #[pyo3(signature = (q, v, out=None))]
     fn kinetic_energy<'py>(&self, q: &Any<'py>, v: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         let inputs = [(q, Q("q")), (v, V("v"))];
-        one_result(&self.core, inputs, &[], out, |model, scratch, [q, v], energy| {
-            scratch.kinematics.update_velocity(model, q, v);
-            energy[0] = kinetic_energy(model, &scratch.kinematics);
-        })
+        one_result(
+            &self.core,
+            inputs,
+            &[],
+            out,
+            |m, w, [q, v], [energy]| batch::kinetic_energy_into(m, w, q, v, energy),
+            |model, scratch, [q, v], energy| {
+                scratch.kinematics.update_velocity(model, q, v);
+                energy[0] = kinetic_energy(model, &scratch.kinematics);
+            },
+        )
     }
 
     /// Potential energy in the field of gravity, J, 0 at the world's origin: a float, or shape ``(N,)``.
     #[pyo3(signature = (q, out=None))]
     fn potential_energy<'py>(&self, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
-        one_result(&self.core, [(q, Q("q"))], &[], out, |model, scratch, [q], energy| {
-            scratch.kinematics.update_position(model, q);
-            energy[0] = potential_energy(model, &scratch.kinematics);
-        })
+        one_result(
+            &self.core,
+            [(q, Q("q"))],
+            &[],
+            out,
+            |m, w, [q], [energy]| batch::potential_energy_into(m, w, q, energy),
+            |model, scratch, [q], energy| {
+                scratch.kinematics.update_position(model, q);
+                energy[0] = potential_energy(model, &scratch.kinematics);
+            },
+        )
     }
 
     /// q ⊕ v: the configuration after one second at the constant velocities v: shape ``(nq,)``.
     #[pyo3(signature = (q, v, out=None))]
     fn integrate<'py>(&self, q: &Any<'py>, v: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         let inputs = [(q, Q("q")), (v, V("v"))];
-        one_result(&self.core, inputs, &[self.nq()], out, |model, _, [q, v], moved| {
+        one_by_one(&self.core, inputs, &[self.nq()], out, |model, _, [q, v], moved| {
             model.integrate_into(q, v, moved);
         })
     }
@@ -198,7 +297,7 @@ impl PyModel {
     #[pyo3(signature = (from_, to, out=None))]
     fn difference<'py>(&self, from_: &Any<'py>, to: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         let inputs = [(from_, Q("from_")), (to, Q("to"))];
-        one_result(&self.core, inputs, &[self.nv()], out, |model, _, [from, to], v| {
+        one_by_one(&self.core, inputs, &[self.nv()], out, |model, _, [from, to], v| {
             model.difference_into(from, to, v);
         })
     }
@@ -206,7 +305,7 @@ impl PyModel {
     /// q with quaternions of length 1 (qw ≥ 0) and angles of continuous joints in (−π, π]: shape ``(nq,)``.
     #[pyo3(signature = (q, out=None))]
     fn normalise<'py>(&self, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
-        one_result(&self.core, [(q, Q("q"))], &[self.nq()], out, |model, _, [q], normal| {
+        one_by_one(&self.core, [(q, Q("q"))], &[self.nq()], out, |model, _, [q], normal| {
             normal.copy_from_slice(q);
             model.normalise(normal);
         })

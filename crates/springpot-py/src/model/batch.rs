@@ -7,13 +7,18 @@ use crate::array::{Rows, Sink, numbers};
 use crate::error::{guarded, type_error, value_error};
 use pyo3::prelude::*;
 use pyo3::types::{PyFloat, PyTuple};
+use springpot::dynamics::batch::{BatchError, BatchWorkspace};
 use springpot::model::{Model, StateError};
+use springpot::spatial::{SimdError, SimdLevel};
 use std::array::from_fn;
 use std::fmt;
+use std::ops::Range;
 use std::sync::OnceLock;
 
 /// States that are worth a thread.
 const WORTH_A_THREAD: usize = 256;
+/// States whose arguments are read, and checked, before they are worked out side by side.
+const CHUNK: usize = 64;
 /// More states than this are worked out without the GIL.
 const WORTH_RELEASING: usize = 16;
 
@@ -58,12 +63,16 @@ enum NoResult {
     State(StateError),
     /// A number that the result holds where the state is finite.
     NotFinite(f64),
+    Level(SimdError),
+    Batch(BatchError),
 }
 
 impl fmt::Display for NoResult {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::State(error) => error.fmt(f),
+            Self::Level(error) => error.fmt(f),
+            Self::Batch(error) => error.fmt(f),
             Self::NotFinite(value) => {
                 let why = "numbers of the state are too large, its mass matrix has no inverse, or two points coincide";
                 write!(f, "the result holds {value}: {why}")
@@ -72,19 +81,42 @@ impl fmt::Display for NoResult {
     }
 }
 
-/// As [`each`], of one result.
-pub(crate) fn one_result<'py, const I: usize>(
+/// An algorithm on rows of states side by side.
+type Together<'a, const I: usize, const O: usize> =
+    &'a (dyn Fn(&Model, &mut BatchWorkspace, [&[f64]; I], [&mut [f64]; O]) -> Result<(), BatchError> + Sync);
+
+/// As [`one_result`], state by state.
+pub(crate) fn one_by_one<'py, const I: usize>(
     core: &Core,
     inputs: [(&Bound<'py, PyAny>, Symbol); I],
     shape: &[usize],
     out: Option<&Bound<'py, PyAny>>,
     work: impl Fn(&Model, &mut Scratch, [&[f64]; I], &mut [f64]) + Sync,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let [only] = each(core, inputs, [shape], out, |model, scratch, inputs, [out]| work(model, scratch, inputs, out))?;
+    let work = |model: &Model, scratch: &mut Scratch, inputs: [&[f64]; I], [out]: [&mut [f64]; 1]| {
+        work(model, scratch, inputs, out);
+    };
+    let [only] = apply(core, inputs, [shape], out, None, work)?;
     Ok(only)
 }
 
-/// Applies `work` to every state that the arguments hold: one where all have one dimension, else one for each row.
+/// As [`each`], of one result.
+pub(crate) fn one_result<'py, const I: usize>(
+    core: &Core,
+    inputs: [(&Bound<'py, PyAny>, Symbol); I],
+    shape: &[usize],
+    out: Option<&Bound<'py, PyAny>>,
+    together: impl Fn(&Model, &mut BatchWorkspace, [&[f64]; I], [&mut [f64]; 1]) -> Result<(), BatchError> + Sync,
+    work: impl Fn(&Model, &mut Scratch, [&[f64]; I], &mut [f64]) + Sync,
+) -> PyResult<Bound<'py, PyAny>> {
+    let work = |model: &Model, scratch: &mut Scratch, inputs: [&[f64]; I], [out]: [&mut [f64]; 1]| {
+        work(model, scratch, inputs, out);
+    };
+    let [only] = apply(core, inputs, [shape], out, Some(&together), work)?;
+    Ok(only)
+}
+
+/// Applies an algorithm to every state that the arguments hold: `work` to one where all have one dimension, `together` to all rows.
 ///
 /// `shapes` are those of the results of one state; results of many have the number of states before them.
 pub(crate) fn each<'py, const I: usize, const O: usize>(
@@ -92,6 +124,19 @@ pub(crate) fn each<'py, const I: usize, const O: usize>(
     inputs: [(&Bound<'py, PyAny>, Symbol); I],
     shapes: [&[usize]; O],
     out: Option<&Bound<'py, PyAny>>,
+    together: impl Fn(&Model, &mut BatchWorkspace, [&[f64]; I], [&mut [f64]; O]) -> Result<(), BatchError> + Sync,
+    work: impl Fn(&Model, &mut Scratch, [&[f64]; I], [&mut [f64]; O]) + Sync,
+) -> PyResult<[Bound<'py, PyAny>; O]> {
+    apply(core, inputs, shapes, out, Some(&together), work)
+}
+
+/// [`each`]; without `together` rows are worked out by `work`, one by one.
+fn apply<'py, const I: usize, const O: usize>(
+    core: &Core,
+    inputs: [(&Bound<'py, PyAny>, Symbol); I],
+    shapes: [&[usize]; O],
+    out: Option<&Bound<'py, PyAny>>,
+    together: Option<Together<'_, I, O>>,
     work: impl Fn(&Model, &mut Scratch, [&[f64]; I], [&mut [f64]; O]) + Sync,
 ) -> PyResult<[Bound<'py, PyAny>; O]> {
     let py = inputs[0].0.py();
@@ -116,7 +161,12 @@ pub(crate) fn each<'py, const I: usize, const O: usize>(
                 if targets.iter().any(|target| rows.iter().any(|rows| rows.is_torn_by(target))) {
                     return Err(value_error("out shares memory with an argument, row by row in another order"));
                 }
-                let run = || many(core, &symbols, &rows, &targets, count, &work);
+                let level = SimdLevel::chosen().map_err(value_error)?;
+                let part = |from: usize, to: usize| match together {
+                    Some(together) => side_by_side(core, level, &symbols, &rows, &targets, from..to, together),
+                    None => in_turn(core, &symbols, &rows, &targets, from..to, &work),
+                };
+                let run = || many(count, &part);
                 let done = if count < WORTH_RELEASING { run() } else { py.detach(run) };
                 done.map_err(|(row, error)| value_error(format!("row {row}: {error}")))?;
             }
@@ -186,30 +236,79 @@ fn finite(values: &[f64]) -> Result<(), NoResult> {
     values.iter().find(|value| !value.is_finite()).map_or(Ok(()), |bad| Err(NoResult::NotFinite(*bad)))
 }
 
-/// The first row that is no state, where there is one.
-fn many<const I: usize, const O: usize>(
+/// Some rows one by one; the first that has no result ends it.
+fn in_turn<const I: usize, const O: usize>(
     core: &Core,
     symbols: &[Symbol; I],
     rows: &[Rows; I],
     targets: &[Sink; O],
-    count: usize,
-    work: &(impl Fn(&Model, &mut Scratch, [&[f64]; I], [&mut [f64]; O]) + Sync),
+    mut wanted: Range<usize>,
+    work: &impl Fn(&Model, &mut Scratch, [&[f64]; I], [&mut [f64]; O]),
 ) -> Result<(), (usize, NoResult)> {
-    let part = |from: usize, to: usize| {
-        let mut scratch = core.scratch();
-        let done = (from..to).try_for_each(|row| {
-            state(core, &mut scratch, symbols, rows, targets, row, work).map_err(|error| (row, error))
+    let mut scratch = core.scratch();
+    let done = wanted
+        .try_for_each(|row| state(core, &mut scratch, symbols, rows, targets, row, work).map_err(|error| (row, error)));
+    core.give_back(scratch);
+    done
+}
+
+/// Some rows side by side; the first that has no result ends it.
+fn side_by_side<const I: usize, const O: usize>(
+    core: &Core,
+    level: SimdLevel,
+    symbols: &[Symbol; I],
+    rows: &[Rows; I],
+    targets: &[Sink; O],
+    wanted: Range<usize>,
+    together: Together<'_, I, O>,
+) -> Result<(), (usize, NoResult)> {
+    let model = &*core.model;
+    let mut scratch = core.scratch();
+    let Scratch { inputs, together: room, .. } = &mut *scratch;
+    let widths = symbols.map(|symbol| symbol.width(model));
+    if room.is_none() {
+        *room = Some(BatchWorkspace::at(model, level).map_err(|error| (wanted.start, NoResult::Level(error)))?);
+    }
+    let room = room.as_mut().expect("it was made");
+    let mut done = Ok(());
+    let mut from = wanted.start;
+    while from < wanted.end && done.is_ok() {
+        let to = wanted.end.min(from + CHUNK);
+        for k in 0..I {
+            inputs[k].resize((to - from) * widths[k], 0.0);
+        }
+        done = (from..to).try_for_each(|row| {
+            (0..I).try_for_each(|k| {
+                let values = &mut inputs[k][(row - from) * widths[k]..][..widths[k]];
+                let is_finite = rows[k].read_finite(row, values);
+                symbols[k].check(core, values, is_finite).map_err(|error| (row, NoResult::State(error)))
+            })
         });
-        core.give_back(scratch);
-        done
-    };
+        if done.is_ok() {
+            // SAFETY: each row is taken once, by one thread.
+            let outs = from_fn::<_, O, _>(|k| unsafe { targets[k].rows(from, to) });
+            done = together(model, room, from_fn(|k| inputs[k].as_slice()), outs).map_err(|error| match error {
+                BatchError::NotFinite { row, value } => (from + row, NoResult::NotFinite(value)),
+                other => (from, NoResult::Batch(other)),
+            });
+        }
+        from = to;
+    }
+    core.give_back(scratch);
+    done
+}
+
+/// The first row that has no result, where there is one; `part` works out some rows.
+fn many(
+    count: usize,
+    part: &(impl Fn(usize, usize) -> Result<(), (usize, NoResult)> + Sync),
+) -> Result<(), (usize, NoResult)> {
     let threads = cores().min(count / WORTH_A_THREAD).max(1);
     if threads == 1 {
         return part(0, count);
     }
     let bound = |k: usize| count * k / threads;
     std::thread::scope(|scope| {
-        let part = &part;
         let others: Vec<_> = (1..threads).map(|k| scope.spawn(move || part(bound(k), bound(k + 1)))).collect();
         let first = part(0, bound(1));
         let results = others.into_iter().map(|thread| thread.join());

@@ -1,5 +1,6 @@
 //! The engine's model, and what its algorithms work in.
 
+use springpot::dynamics::batch::BatchWorkspace;
 use springpot::dynamics::{AbaDerivatives, Kinematics, RneaDerivatives, Workspace};
 use springpot::model::Model;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -27,6 +28,8 @@ pub(crate) struct Scratch {
     pub(crate) matrix: Vec<f64>,
     /// The state at hand.
     pub(crate) inputs: [Vec<f64>; 3],
+    /// States side by side, made when they are first asked for.
+    pub(crate) together: Option<BatchWorkspace>,
 }
 
 impl Core {
@@ -48,6 +51,7 @@ impl Core {
                 forward_slopes: AbaDerivatives::new(model),
                 matrix: vec![0.0; model.nv() * model.nv()],
                 inputs: Default::default(),
+                together: None,
             })
         })
     }

@@ -7,8 +7,9 @@ use crate::error::{model_error, type_error};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
-use springpot::dynamics::{frame_jacobian_into, frame_jacobian_rate_into, pair_into};
-use springpot::model::{Anchor, Site};
+use springpot::dynamics::batch::{self, BatchWorkspace};
+use springpot::dynamics::{frame_jacobian_at_into, frame_jacobian_rate_into, pair_into};
+use springpot::model::{Anchor, Model, Site};
 
 type Any<'py> = Bound<'py, PyAny>;
 
@@ -47,18 +48,25 @@ impl PyModel {
     fn frame_placement<'py>(&self, name: &str, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<[Any<'py>; 2]> {
         let frame = self.frame(q.py(), name)?;
         let shapes: [&[usize]; 2] = [&[3, 3], &[3]];
-        each(&self.core, [(q, Q("q"))], shapes, out, |model, scratch, [q], [rotation, position]| {
-            scratch.kinematics.update_position(model, q);
-            let placement = scratch.kinematics.frame(&frame);
-            position.copy_from_slice(&placement.translation.0);
-            let turn = &placement.rotation;
-            for column in 0..3 {
-                let mut axis = [0.0; 3];
-                axis[column] = 1.0;
-                let turned = *turn * springpot::spatial::Vec3(axis);
-                (0..3).for_each(|row| rotation[3 * row + column] = turned.0[row]);
-            }
-        })
+        each(
+            &self.core,
+            [(q, Q("q"))],
+            shapes,
+            out,
+            |m, w, [q], [rotation, position]| batch::frame_placement_into(m, w, &frame, q, rotation, position),
+            |model, scratch, [q], [rotation, position]| {
+                scratch.kinematics.update_position(model, q);
+                let placement = scratch.kinematics.frame(&frame);
+                position.copy_from_slice(&placement.translation.0);
+                let turn = &placement.rotation;
+                for column in 0..3 {
+                    let mut axis = [0.0; 3];
+                    axis[column] = 1.0;
+                    let turned = *turn * springpot::spatial::Vec3(axis);
+                    (0..3).for_each(|row| rotation[3 * row + column] = turned.0[row]);
+                }
+            },
+        )
     }
 
     /// The Jacobian of a frame, (dr/dt, ω) = J v, both in world axes: shape ``(6, nv)``, the linear rows of its origin first.
@@ -67,10 +75,16 @@ impl PyModel {
     #[pyo3(signature = (name, q, out=None))]
     fn frame_jacobian<'py>(&self, name: &str, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
         let (frame, n) = (self.frame(q.py(), name)?, self.nv());
-        one_result(&self.core, [(q, Q("q"))], &[6, n], out, |model, scratch, [q], jacobian| {
-            scratch.kinematics.update_position(model, q);
-            frame_jacobian_into(model, &scratch.kinematics, &frame, jacobian);
-        })
+        one_result(
+            &self.core,
+            [(q, Q("q"))],
+            &[6, n],
+            out,
+            |m, w, [q], [jacobian]| batch::frame_jacobian_into(m, w, &frame, q, jacobian),
+            |model, scratch, [q], jacobian| {
+                frame_jacobian_at_into(model, q, &frame, &mut scratch.workspace, jacobian);
+            },
+        )
     }
 
     /// dJ/dt of :meth:`frame_jacobian`, so that (d²r/dt², dω/dt) = J a + (dJ/dt) v: shape ``(6, nv)``.
@@ -83,10 +97,17 @@ impl PyModel {
         out: Option<&Any<'py>>,
     ) -> PyResult<Any<'py>> {
         let (frame, n, inputs) = (self.frame(q.py(), name)?, self.nv(), [(q, Q("q")), (v, V("v"))]);
-        one_result(&self.core, inputs, &[6, n], out, |model, scratch, [q, v], rate| {
-            scratch.kinematics.update_velocity(model, q, v);
-            frame_jacobian_rate_into(model, &scratch.kinematics, &frame, rate);
-        })
+        one_result(
+            &self.core,
+            inputs,
+            &[6, n],
+            out,
+            |m, w, [q, v], [rate]| batch::frame_jacobian_rate_into(m, w, &frame, q, v, rate),
+            |model, scratch, [q, v], rate| {
+                scratch.kinematics.update_velocity(model, q, v);
+                frame_jacobian_rate_into(model, &scratch.kinematics, &frame, rate);
+            },
+        )
     }
 
     /// The distance of two points of bodies, m, and its gradient ∂l/∂q, shape ``(nv,)``.
@@ -103,7 +124,11 @@ impl PyModel {
         let (from, to) = (self.site(q.py(), &from_.0, from_.1)?, self.site(q.py(), &to.0, to.1)?);
         let (n, still) = (self.nv(), vec![0.0; self.nv()]);
         let shapes: [&[usize]; 2] = [&[], &[n]];
-        each(&self.core, [(q, Q("q"))], shapes, out, |model, scratch, [q], [length, gradient]| {
+        let together = |m: &Model, w: &mut BatchWorkspace, [q]: [&[f64]; 1], [length, gradient]: [&mut [f64]; 2]| {
+            let (rows, mut rates) = (length.len(), vec![0.0; length.len()]);
+            batch::pair_into(m, w, [&from, &to], q, &vec![0.0; rows * n], [length, &mut rates, gradient])
+        };
+        each(&self.core, [(q, Q("q"))], shapes, out, together, |model, scratch, [q], [length, gradient]| {
             scratch.kinematics.update_velocity(model, q, &still);
             length[0] = pair_into(model, &scratch.kinematics, &from, &to, gradient).length;
         })
