@@ -43,6 +43,7 @@ mod terminal;
 use arguments::{Arguments, Command, RunOptions};
 use clap::Parser;
 use springpot::law::Catalog;
+use springpot::spatial::SimdLevel;
 use springpot_run::table::disk::Disk;
 use std::ffi::OsString;
 use std::io::{self, Write as _};
@@ -138,6 +139,10 @@ fn command(catalog: &Catalog, disk: &Disk, arguments: &[OsString]) -> u8 {
             return printed(printed_all.and_then(|()| io::stdout().flush())).into();
         }
     };
+    if let Err(error) = SimdLevel::chosen() {
+        terminal::print_error(&format!("error: {error}\n"));
+        return Ending::Refused.into();
+    }
     let ending = match arguments.command {
         Command::Run(options) => scenario::run::run(&with_fewer_jobs(options), catalog, disk),
         Command::Sensitivity(options) => scenario::sensitivity::sensitivity(&options, catalog, disk),

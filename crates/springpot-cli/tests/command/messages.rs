@@ -54,6 +54,18 @@ fn negative_numbers_are_numbers() {
 }
 
 #[test]
+fn levels_of_simd_are_asked_for_by_name() {
+    let place = Place::with(ARM);
+    let check = |level: &str| place.command(&["check", "arm.toml"]).env("SPRINGPOT_SIMD", level).output().unwrap();
+    let refused = check("sse2");
+    assert_eq!(refused.status.code(), Some(2));
+    let words = "error: SPRINGPOT_SIMD is \"sse2\"; it must be baseline, avx2 or avx512, or not set at all\n";
+    assert_eq!(String::from_utf8(refused.stderr).unwrap(), words);
+    assert_eq!(check("baseline").stdout, check("").stdout);
+    assert!(check("baseline").status.success());
+}
+
+#[test]
 fn a_title_does_not_steer_the_terminal() {
     let title = format!("title = \"{STEERING}\\u007f\\nrobot     forged π²\"");
     let place = Place::with(&ARM.replace("title = \"Damped arm\"", &title));
