@@ -1,4 +1,4 @@
-//! Rigid-body algorithms on robots of the size of an arm, an arm with a gripper and a humanoid, one state at a time.
+//! Rigid-body algorithms on robots of the size of an arm, an arm with a gripper and a humanoid on the ground and on a floating base, one state at a time.
 
 use std::hint::black_box;
 
@@ -6,7 +6,8 @@ use criterion::{BenchmarkGroup, Criterion, criterion_group, criterion_main};
 use serde_json::Value;
 use springpot::dynamics::{
     AbaDerivatives, Kinematics, PairForce, RneaDerivatives, Workspace, aba_derivatives_into, aba_into,
-    christoffel_into, coriolis_into, crba_into, mass_inverse_into, pair_into, rnea_derivatives_into, rnea_into,
+    christoffel_into, coriolis_into, crba_into, frame_jacobian_at_into, frame_jacobian_into, mass_inverse_into,
+    pair_into, rnea_derivatives_into, rnea_into,
 };
 use springpot::model::{Anchor, BodySpec, JointKind, JointSpec, Model, ModelBuilder, Parent};
 
@@ -20,8 +21,12 @@ fn robot(name: &str) -> Model {
     let vector = |value: &Value| [0, 1, 2].map(|k| value[k].as_f64().expect("a number"));
     let mut builder = ModelBuilder::new([0.0, 0.0, -9.81]);
     for (k, joint) in file["model"]["joints"].as_array().expect("joints").iter().enumerate() {
-        let kind = if joint["type"] == "R" { JointKind::Revolute } else { JointKind::Prismatic };
-        let plain = JointSpec::revolute(format!("q{k}"), vector(&joint["axis"]), vector(&joint["placement_p"]));
+        let (kind, axis) = match joint["type"].as_str() {
+            Some("R") => (JointKind::Revolute, vector(&joint["axis"])),
+            Some("P") => (JointKind::Prismatic, vector(&joint["axis"])),
+            _ => (JointKind::Floating, [0.0, 0.0, 1.0]),
+        };
+        let plain = JointSpec::revolute(format!("q{k}"), axis, vector(&joint["placement_p"]));
         let spec = BodySpec {
             name: format!("link{k}"),
             parent: joint["parent"].as_u64().map_or(Parent::World, |p| Parent::Body(p as usize)),
@@ -51,15 +56,17 @@ fn row(group: &mut BenchmarkGroup<'_, criterion::measurement::WallTime>, name: &
 }
 
 fn rigid(criterion: &mut Criterion) {
-    for name in ["ur5", "panda", "simple_humanoid"] {
+    for name in ["ur5", "panda", "simple_humanoid", "simple_humanoid_ff"] {
         let model = robot(name);
         let n = model.nv();
-        let (q, v, a) = (states(n, 0.1), states(n, 0.5), states(n, 0.8));
+        let (q, v, a) = (states(model.nq(), 0.1), states(n, 0.5), states(n, 0.8));
         let (mut kinematics, mut workspace) = (Kinematics::new(&model), Workspace::new(&model));
         let (mut vector, mut mass, mut inverse) = (vec![0.0; n], vec![0.0; n * n], vec![0.0; n * n]);
         let (mut inverse_slopes, mut forward_slopes) = (RneaDerivatives::new(&model), AbaDerivatives::new(&model));
         let site = |body, point| model.resolve(&Anchor { body, point }).expect("the body exists");
-        let (from, to) = (site(Parent::Body(0), [0.14, -0.1, 0.08]), site(Parent::Body(n - 1), [0.0, 0.1, 0.1]));
+        let last = Parent::Body(model.body_names().len() - 1);
+        let (from, to) = (site(Parent::Body(0), [0.14, -0.1, 0.08]), site(last, [0.0, 0.1, 0.1]));
+        let tip = model.frame(last).expect("the body exists");
         let pairs = [PairForce { from, to, force: 10.0, d_length: 100.0, d_rate: 5.0 }];
 
         let mut group = criterion.benchmark_group(name);
@@ -80,6 +87,14 @@ fn rigid(criterion: &mut Criterion) {
         row(&mut group, "mass inverse", |s| {
             kinematics.update_position(&model, &q[s]);
             mass_inverse_into(&model, &kinematics, &mut workspace, &mut mass, &mut inverse);
+        });
+        let mut jacobian = vec![0.0; 6 * n];
+        row(&mut group, "frame jacobian", |s| {
+            kinematics.update_position(&model, &q[s]);
+            frame_jacobian_into(&model, &kinematics, &tip, &mut jacobian);
+        });
+        row(&mut group, "frame jacobian alone", |s| {
+            frame_jacobian_at_into(&model, &q[s], &tip, &mut workspace, &mut jacobian);
         });
         row(&mut group, "coriolis", |s| {
             kinematics.update_velocity(&model, &q[s], &v[s]);
