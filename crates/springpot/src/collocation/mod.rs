@@ -2,10 +2,12 @@
 //!
 //! With θ = (t − t_n)/h the nodes are 0 < c_1 < … < c_s ≤ 1. A function over the step is known by its values at the start and at the nodes.
 
+mod gaps;
 pub(crate) mod inner;
 mod places;
 pub(crate) mod radau;
 
+pub(crate) use gaps::Gaps;
 pub use places::Places;
 
 use serde::{Deserialize, Serialize};
@@ -16,6 +18,12 @@ const SQRT6: f64 = 2.449_489_742_783_178;
 
 /// Nodes of Radau IIA with three stages, (4 ∓ √6)/10 and 1 (Hairer & Wanner, Solving ODEs II, IV.5).
 pub const RADAU_NODES: [f64; 3] = [(4.0 - SQRT6) / 10.0, (4.0 + SQRT6) / 10.0, 1.0];
+
+/// Coefficients of θ^p, p = 0…4, of ω = θ(θ − c_1)(θ − c_2)(θ − 1), which vanishes where the cubic of the rates is exact.
+pub(crate) const NODE_POLYNOMIAL: [f64; 5] = {
+    let [c1, c2, _] = RADAU_NODES;
+    [0.0, -c1 * c2, c1 * c2 + c1 + c2, -(1.0 + c1 + c2), 1.0]
+};
 
 /// Weights of Radau IIA: ∫₀¹ f ≈ Σ b_i f(c_i), exact for degree 4.
 pub const RADAU_WEIGHTS: [f64; 3] = [(16.0 - SQRT6) / 36.0, (16.0 + SQRT6) / 36.0, 1.0 / 9.0];

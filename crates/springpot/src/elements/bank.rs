@@ -307,6 +307,13 @@ impl ElementBank {
         [stroke, rate].map(|values| values.first_chunk().expect("as many nodes as the most"))
     }
 
+    /// What the rates that element `e` was told of a step with [`Nodes::Radau`] are at θ, with what its strokes tell of them where both are taken.
+    pub(crate) fn rate_within(&self, e: usize, theta: f64) -> f64 {
+        let step = self.elements[e].told.step(self.step);
+        let form = if step.form == Form::Strokes { Form::Rates } else { step.form };
+        Step { form, ..step }.polynomial().rate(theta)
+    }
+
     /// Makes ready what does not change while the step is worked out.
     pub(crate) fn prepare(&mut self) {
         let step = self.step;

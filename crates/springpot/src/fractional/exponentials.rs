@@ -1,10 +1,9 @@
 //! e^{−X} and its moments ψ_p(X) = ∫₀¹ e^{−X(1−θ)} θ^p dθ: what an exponential with the rate λ makes of a step, X = λh.
 
+use super::lanes::LANES;
+use super::step::CUBIC;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f64x8};
-
-/// Number of moments that steps of a time loop ask for: x' is a cubic.
-pub(super) const CUBIC: usize = 4;
 
 /// Below it e^x is 0 to double precision.
 const SMALLEST: f64 = -708.0;
@@ -76,6 +75,26 @@ pub(super) fn cubic_moments<S: Simd>(x: f64x8<S>, decay: f64x8<S>) -> [f64x8<S>;
         for p in 0..CUBIC {
             psi[p] = is_small.select(psi[p], up[p]);
         }
+    }
+    psi
+}
+
+/// As [`cubic_moments`], ψ_0 … ψ_{N−1}.
+#[inline(always)]
+pub(super) fn lane_moments<S: Simd, const N: usize>(x: f64x8<S>, decay: f64x8<S>) -> [f64x8<S>; N] {
+    let mut psi = [f64x8::splat(x.simd, 0.0); N];
+    if N == CUBIC {
+        psi.copy_from_slice(&cubic_moments(x, decay));
+        return psi;
+    }
+    let mut lanes = [[0.0; LANES]; N];
+    for (l, x) in x.to_array().into_iter().enumerate() {
+        let mut own = [0.0; N];
+        moments(x, &mut own);
+        lanes.iter_mut().zip(own).for_each(|(lanes, own)| lanes[l] = own);
+    }
+    for (psi, lanes) in psi.iter_mut().zip(&lanes) {
+        *psi = f64x8::load_array_ref(x.simd, lanes);
     }
     psi
 }

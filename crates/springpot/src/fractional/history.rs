@@ -7,9 +7,10 @@
 //! There is no shortest lag: faster modes are made where one is asked for, from the last piece alone. That is exact, since they
 //! have forgotten everything before it (X > 100).
 
-use super::exponentials::{CUBIC, cubic_moments, decay, moments};
+use super::exponentials::{decay, lane_moments, moments};
 use super::kernel::Kernel;
 use super::lanes::{Block, LANES, blocks, load, sum};
+use super::step::{CUBIC, SEXTIC};
 use super::table::Table;
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch, f64x8};
@@ -71,22 +72,28 @@ impl Lag<'_> {
         }
     }
 
-    /// e^{−X} and ψ_0 … ψ_3 of a block.
+    /// e^{−X} and ψ_0 … ψ_{N−1} of a block.
     #[inline(always)]
-    pub(super) fn moments<S: Simd>(&self, simd: S, k: usize) -> (f64x8<S>, [f64x8<S>; CUBIC]) {
+    pub(super) fn moments<S: Simd, const N: usize>(&self, simd: S, k: usize) -> (f64x8<S>, [f64x8<S>; N]) {
         match self.table {
             Some(table) => {
-                let [a, b, c, d]: &[Block; CUBIC] = &table.psi.as_chunks().0[k];
-                (load(simd, &table.decay[k]), [load(simd, a), load(simd, b), load(simd, c), load(simd, d)])
+                let (own, mut psi): (&[Block; N], _) = (&table.psi.as_chunks().0[k], [f64x8::splat(simd, 0.0); N]);
+                for p in 0..N {
+                    psi[p] = load(simd, &own[p]);
+                }
+                (load(simd, &table.decay[k]), psi)
             }
             None if self.lag == 0.0 => {
-                let [one, half] = [f64x8::splat(simd, 1.0), f64x8::splat(simd, 0.5)];
-                (one, [one, half, one * (1.0 / 3.0), half * 0.5])
+                let (one, mut psi) = (f64x8::splat(simd, 1.0), [f64x8::splat(simd, 1.0); N]);
+                for p in 1..N {
+                    psi[p] = one * (1.0 / (p + 1) as f64);
+                }
+                (one, psi)
             }
             None => {
                 let x = load(simd, &self.history.lambda[k]) * self.lag;
                 let decay = decay(x);
-                (decay, cubic_moments(x, decay))
+                (decay, lane_moments(x, decay))
             }
         }
     }
@@ -146,23 +153,20 @@ impl History {
         all.as_flattened()[..self.kernel.modes()].to_vec()
     }
 
-    /// e^{−X}, and ψ_0 … ψ_3, of every mode at a lag.
-    pub(super) fn moments(&self, lag: f64) -> (Vec<f64>, [Vec<f64>; CUBIC]) {
-        let (at, modes) = (self.lag(lag), self.kernel.modes());
+    /// e^{−X}, and ψ_0 … ψ_{N−1}, of every mode at a lag.
+    pub(super) fn moments<const N: usize>(&self, lag: f64) -> (Vec<f64>, [Vec<f64>; N]) {
+        let (at, modes) = (self.lag_of(lag, N), self.kernel.modes());
         let none = || vec![[0.0; LANES]; self.z.len()];
-        let (mut decays, [mut a, mut b, mut c, mut d]) = (none(), [none(), none(), none(), none()]);
+        let (mut decays, mut all) = (none(), [(); N].map(|()| none()));
         dispatch!(Level::new(), simd => {
             for k in 0..self.z.len() {
-                let (decay, psi) = at.moments(simd, k);
+                let (decay, psi): (_, [_; N]) = at.moments(simd, k);
                 decay.store_array(&mut decays[k]);
-                psi[0].store_array(&mut a[k]);
-                psi[1].store_array(&mut b[k]);
-                psi[2].store_array(&mut c[k]);
-                psi[3].store_array(&mut d[k]);
+                all.iter_mut().zip(psi).for_each(|(all, psi)| psi.store_array(&mut all[k]));
             }
         });
         let flat = |blocks: Vec<Block>| blocks.as_flattened()[..modes].to_vec();
-        (flat(decays), [flat(a), flat(b), flat(c), flat(d)])
+        (flat(decays), all.map(flat))
     }
 
     pub(super) fn kernel(&self) -> &Kernel {
@@ -248,19 +252,24 @@ impl History {
                 simd,
                 lag,
                 #[inline(always)]
-                |k, _, [psi, ..]| total += load(simd, &self.weight[k]) * psi * load(simd, &self.z[k]),
+                |k, _, [psi, ..]: [_; CUBIC]| total += load(simd, &self.weight[k]) * psi * load(simd, &self.z[k]),
             );
             sum(total)
         })
     }
 
     /// Σ w z² and Σ w λ z² at the lag τ, where the piece under way has the coefficients y of θ^p, θ = s/τ.
-    pub(super) fn squares(&self, lag: f64, y: &[f64; CUBIC]) -> Squares {
-        dispatch!(Level::new(), simd => self.squares_with(simd, lag, y))
+    pub(super) fn squares(&self, lag: f64, y: &[f64; SEXTIC]) -> Squares {
+        let [a, b, c, d, higher @ ..] = y;
+        let is_cubic = higher.iter().all(|y| *y == 0.0);
+        dispatch!(Level::new(), simd => match is_cubic {
+            true => self.squares_with(simd, lag, &[*a, *b, *c, *d]),
+            false => self.squares_with(simd, lag, y),
+        })
     }
 
     #[inline(always)]
-    fn squares_with<S: Simd>(&self, simd: S, lag: f64, y: &[f64; CUBIC]) -> Squares {
+    fn squares_with<S: Simd, const N: usize>(&self, simd: S, lag: f64, y: &[f64; N]) -> Squares {
         let mut totals = [f64x8::splat(simd, 0.0); 2];
         if lag == 0.0 {
             for (k, z) in self.z.iter().enumerate() {
@@ -271,8 +280,11 @@ impl History {
                 simd,
                 lag,
                 #[inline(always)]
-                |k, decay, [a, b, c, d]| {
-                    let grown = a * y[0] + b * y[1] + c * y[2] + d * y[3];
+                |k, decay, psi: [f64x8<S>; N]| {
+                    let mut grown = psi[0] * y[0];
+                    for p in 1..N {
+                        grown += psi[p] * y[p];
+                    }
                     self.add_squares(k, decay * load(simd, &self.z[k]) + grown * lag, &mut totals);
                 },
             );
@@ -288,20 +300,18 @@ impl History {
         *rated += load(z.simd, &self.lambda[k]) * square;
     }
 
-    /// Hands over index, e^{−X} and ψ_0 … ψ_3 of every block.
+    /// Hands over index, e^{−X} and ψ_0 … ψ_{N−1} of every block.
     #[inline(always)]
-    fn with_moments<S: Simd>(&self, simd: S, lag: f64, mut take: impl FnMut(usize, f64x8<S>, [f64x8<S>; CUBIC])) {
-        let moments = CUBIC * self.z.len();
-        if let Some(table) = self.tables.iter().find(|table| table.lag == lag && table.psi.len() == moments) {
-            for (k, (decay, [a, b, c, d])) in table.decay.iter().zip(table.psi.as_chunks().0).enumerate() {
-                take(k, load(simd, decay), [load(simd, a), load(simd, b), load(simd, c), load(simd, d)]);
-            }
-        } else {
-            for (k, lambda) in self.lambda.iter().enumerate() {
-                let x = load(simd, lambda) * lag;
-                let decay = decay(x);
-                take(k, decay, cubic_moments(x, decay));
-            }
+    fn with_moments<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        lag: f64,
+        mut take: impl FnMut(usize, f64x8<S>, [f64x8<S>; N]),
+    ) {
+        let at = self.lag_of(lag, N);
+        for k in 0..self.z.len() {
+            let (decay, psi) = at.moments(simd, k);
+            take(k, decay, psi);
         }
     }
 
@@ -315,6 +325,9 @@ impl History {
             [a, b, c] => table.advance(simd, z, &[width * a, width * b, width * c]),
             [a, b, c, d] => table.advance(simd, z, &[width * a, width * b, width * c, width * d]),
             [a, b, c, d, e] => table.advance(simd, z, &[width * a, width * b, width * c, width * d, width * e]),
+            [a, b, c, d, e, f, g] => {
+                table.advance(simd, z, &[a, b, c, d, e, f, g].map(|y| width * y))
+            }
             _ => {
                 let y: Vec<f64> = y.iter().map(|y| width * y).collect();
                 table.advance(simd, z, &y)
@@ -390,9 +403,14 @@ impl History {
         (self.last.0, &self.last.1)
     }
 
-    /// What the modes that are kept make of one lag.
+    /// What the modes that are kept make of one lag, of a cubic.
     pub(super) fn lag(&self, lag: f64) -> Lag<'_> {
-        let moments = CUBIC * self.z.len();
+        self.lag_of(lag, CUBIC)
+    }
+
+    /// The same of a piece with so many coefficients.
+    pub(super) fn lag_of(&self, lag: f64, coefficients: usize) -> Lag<'_> {
+        let moments = coefficients * self.z.len();
         let table = self.tables.iter().find(|table| table.lag == lag && table.psi.len() == moments);
         Lag { history: self, lag, table }
     }
@@ -442,10 +460,10 @@ impl History {
         self.tables.clear();
     }
 
-    /// What such a mode has of the coefficients of the last piece, a cubic: its width times ψ_0 … ψ_3.
-    pub(super) fn fast_moments(&self, lambda: f64) -> [f64; CUBIC] {
-        let mut psi = [0.0; CUBIC];
-        moments(lambda * self.last.0, &mut psi);
+    /// What such a mode has of so many coefficients of the last piece: its width times ψ_0, ψ_1, …
+    pub(super) fn fast_moments(&self, lambda: f64, coefficients: usize) -> [f64; SEXTIC] {
+        let mut psi = [0.0; SEXTIC];
+        moments(lambda * self.last.0, &mut psi[..coefficients]);
         psi.map(|psi| self.last.0 * psi)
     }
 

@@ -1,6 +1,6 @@
 //! The share of the step under way in D^alpha x: the exact kernel against the step's polynomial.
 
-use super::step::{RatePolynomial, local_factors};
+use super::step::{RatePolynomial, SEXTIC, local_factors};
 use crate::collocation::inner;
 use crate::collocation::{MAX_NODES, Nodes, Places, RADAU_NODES, TABLEAU};
 use serde::{Deserialize, Serialize};
@@ -11,15 +11,52 @@ use serde::{Deserialize, Serialize};
 pub(super) struct Local {
     alpha: f64,
     /// p!/Γ(p+2−alpha).
-    pub(super) factors: [f64; 5],
+    pub(super) factors: [f64; SEXTIC],
     /// Factors of x' at 0 and at the nodes, for each Radau node, of a step of h = 1.
     rates: [[f64; 4]; 3],
     /// Those of the strokes x_j − x_0.
     strokes: [[f64; 3]; 3],
+    /// Both of the polynomial that has strokes and rates.
+    both: Both,
     /// Those of the strokes at the nodes inside a series.
     inner: [[f64; 4]; 4],
     /// A lag and its power 1−alpha.
     power: [f64; 2],
+}
+
+/// In how many places of a step an estimate is looked at.
+const SAMPLES: u8 = 20;
+
+/// D^alpha x at the three nodes of a step of h = 1 whose polynomial has strokes and rates.
+#[derive(Debug, Clone, Copy)]
+struct Both {
+    /// Factors of x' at 0 and at the nodes, for each node.
+    rates: [[f64; 4]; 3],
+    /// Those of the strokes x_j − x_0.
+    strokes: [[f64; 3]; 3],
+    /// The most that what x at the first node tells does anywhere in the step, in units of the highest coefficient.
+    defect: f64,
+}
+
+impl Both {
+    fn of(factors: &[f64; SEXTIC], alpha: f64, places: Option<&Places>) -> Self {
+        let at = |polynomial: &[f64], theta: f64| {
+            let terms = polynomial.iter().zip(factors).map(|(u, factor)| u * factor);
+            theta.powf(1.0 - alpha) * terms.rev().fold(0.0, |sum, term| sum * theta + term)
+        };
+        let through = |known: [&[f64]; 2]| RatePolynomial::through_strokes_and_rates(1.0, places, known).u;
+        let unit = |k: usize| std::array::from_fn::<f64, 4, _>(|j| f64::from(u8::from(j == k)));
+        let by_rate = [0, 1, 2, 3].map(|k| through([&[0.0; 4], &unit(k)]));
+        let by_stroke = [1, 2, 3].map(|k| through([&unit(k), &[0.0; 4]]));
+        let [first, ..] = &by_stroke;
+        let samples = (1..=SAMPLES).map(|k| at(first, f64::from(k) / f64::from(SAMPLES)).abs());
+        let nodes = places.map_or(RADAU_NODES, |places| *places.positions());
+        Self {
+            rates: nodes.map(|theta| by_rate.map(|u| at(&u, theta))),
+            strokes: nodes.map(|theta| by_stroke.map(|u| at(&u, theta))),
+            defect: samples.fold(0.0, f64::max) / first[SEXTIC - 1].abs(),
+        }
+    }
 }
 
 impl From<f64> for Local {
@@ -40,7 +77,8 @@ impl From<f64> for Local {
             let term = |p: usize, j: usize| factors[p] * (p + 1) as f64 * inner::TABLEAU_OF_FOUR.values[p + 1][j + 1];
             std::array::from_fn(|j| scale * (0..4).rev().fold(0.0, |sum, p| sum * c + term(p, j)))
         });
-        Self { alpha, factors, rates, strokes, inner, power: [1.0; 2] }
+        let both = Both::of(&factors, alpha, None);
+        Self { alpha, factors, rates, strokes, both, inner, power: [1.0; 2] }
     }
 }
 
@@ -63,8 +101,30 @@ impl Local {
 
     /// h^{1−alpha} Σ_p u_p p!/Γ(p+2−alpha) θ^{p+1−alpha}.
     pub(super) fn part(&self, step: &RatePolynomial, theta: f64) -> f64 {
-        let sum = (0..4).rev().fold(0.0, |sum, p| sum * theta + step.u[p] * self.factors[p]);
+        let sum = (0..SEXTIC).rev().fold(0.0, |sum, p| sum * theta + step.u[p] * self.factors[p]);
         self.power(theta * step.h) * sum
+    }
+
+    /// Where three nodes are at `places`, else those of Radau.
+    fn both(&self, places: Option<&Places>) -> Both {
+        places.map_or(self.both, |places| Both::of(&self.factors, self.alpha, Some(places)))
+    }
+
+    /// The most that x at the first node tells of D^alpha x in a step whose polynomial has strokes and rates, of which the highest coefficient is
+    /// `highest`; order 7 − alpha.
+    pub(super) fn defect_of_both(&self, h: f64, places: Option<&Places>, highest: f64) -> f64 {
+        self.power(h) * self.both(places).defect * highest
+    }
+
+    /// Factors of x' at 0 and at the nodes, and of the strokes x_j − x_0, for node i of a step whose polynomial has both.
+    pub(super) fn rows_of_both(
+        &self,
+        h: f64,
+        i: usize,
+        places: Option<&Places>,
+    ) -> ([f64; MAX_NODES + 1], [f64; MAX_NODES]) {
+        let (scale, both) = (self.power(h), self.both(places));
+        (padded(both.rates[i].map(|row| scale * row)), padded(both.strokes[i].map(|row| scale * row / h)))
     }
 
     /// Factors of x' at 0 and at the nodes, for node i.

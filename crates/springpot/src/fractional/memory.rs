@@ -35,15 +35,21 @@
 //! For samples, streams and functions that are known, [`derivative`](super::derivative), [`Stream`](super::Stream) and
 //! [`Piecewise`](super::Piecewise) ask for less.
 
-use super::exponentials::CUBIC;
 use super::gamma::reciprocal_gamma;
 use super::history::{History, Squares};
 use super::kernel::{Kernel, KernelError};
 use super::kind::Kind;
 use super::local::Local;
-use super::step::{Form, NODE_POLYNOMIAL, RatePolynomial};
-use crate::collocation::{MAX_NODES, Nodes, Places};
+use super::step::{Form, RatePolynomial, SEXTIC};
+use crate::collocation::{MAX_NODES, NODE_POLYNOMIAL, Nodes, Places};
 use serde::{Deserialize, Serialize};
+
+/// What rounding of the strokes, each by as much, may add to the highest coefficient of a polynomial of strokes and rates, in units of the mean rate
+/// that it makes of a step: the sum of the last row of the inverse of [`crate::collocation::Gaps`], the stroke at the start counted with each.
+const NOISE_OF_BOTH: f64 = 2.0 * 12_600.0;
+
+/// What it may add to D^alpha x at a node, in units of h^−alpha: at no order more than 4 times as much as each of two strokes.
+const NOISE_AT_NODES: f64 = 8.0;
 
 /// Square of what the polynomial with its zeros at the nodes of a step has next to them; between them it is 0.003 to 0.018.
 pub(super) const NEXT_TO_NODE: f64 = 1e-6;
@@ -284,7 +290,7 @@ impl Memory {
             let strokes = || self.local.stroke_row_at(start.h, i, places);
             let Some(past) = &self.past else {
                 match form {
-                    Form::Rates => affine.rate[i][i] = 1.0,
+                    Form::Rates | Form::Hermite => affine.rate[i][i] = 1.0,
                     Form::Strokes => affine.stroke[i] = strokes(),
                 }
                 continue;
@@ -297,6 +303,7 @@ impl Memory {
                     affine.history[i] += row[0] * start.rate;
                     affine.rate[i].copy_from_slice(&row[1..]);
                 }
+                Form::Hermite => self.take_both(start, i, Some(places), &mut affine),
             }
         }
         affine
@@ -312,7 +319,7 @@ impl Memory {
             }
             let Some(past) = &self.past else {
                 match form {
-                    Form::Rates => affine.rate[i][i] = 1.0,
+                    Form::Rates | Form::Hermite => affine.rate[i][i] = 1.0,
                     Form::Strokes => affine.stroke[i] = self.local.stroke_row(start.h, i, nodes),
                 }
                 continue;
@@ -329,9 +336,17 @@ impl Memory {
                     affine.history[i] += row[0] * start.rate;
                     affine.rate[i].copy_from_slice(&row[1..]);
                 }
+                Form::Hermite => self.take_both(start, i, None, &mut affine),
             }
         }
         affine
+    }
+
+    fn take_both(&self, start: &StepStart, i: usize, places: Option<&Places>, affine: &mut Affine) {
+        let (rates, strokes) = self.local.rows_of_both(start.h, i, places);
+        affine.history[i] += rates[0] * start.rate;
+        affine.rate[i].copy_from_slice(&rates[1..]);
+        affine.stroke[i] = strokes;
     }
 
     /// Makes ready what a step will ask for, which then costs nothing however often it is asked; no answer changes.
@@ -346,7 +361,7 @@ impl Memory {
         }
         let affine = match places {
             None => {
-                self.prepare_lags(start.h, nodes);
+                self.prepare_lags(start.h, nodes, form.coefficients());
                 self.affine(start, nodes, form)
             }
             // Such lags are those of no other step: tables of them would be filled for one use.
@@ -355,16 +370,16 @@ impl Memory {
         self.prepared = Some(Prepared { start: *start, nodes, places: places.copied(), form, affine });
     }
 
-    fn prepare_lags(&mut self, h: f64, nodes: Nodes) {
+    fn prepare_lags(&mut self, h: f64, nodes: Nodes, coefficients: usize) {
         let Some(past) = &mut self.past else { return };
         self.local.prepare(h);
         match nodes {
             Nodes::One | Nodes::Midpoint => {
-                past.prepare(h, CUBIC, 0.0);
+                past.prepare(h, coefficients, 0.0);
             }
             Nodes::Radau | Nodes::Inner => {
                 for c in nodes.positions() {
-                    past.prepare(c * h, CUBIC, 0.0);
+                    past.prepare(c * h, coefficients, 0.0);
                 }
             }
         }
@@ -427,7 +442,7 @@ impl Memory {
         value + miss * self.local.power(theta * step.h) * at(&moments)
     }
 
-    /// |D^alpha x| at the end of the step by the step's polynomial less the same by the Hermite form: the embedded error.
+    /// |D^alpha x| at the end of the step by the step's polynomial less the same by the Hermite form of its ends: the embedded error.
     ///
     /// `resolution` is the rounding of the strokes; differences that it explains count as 0.
     pub fn defect(&self, step: &RatePolynomial, stroke: [f64; 2], rate: [f64; 2], resolution: f64) -> f64 {
@@ -437,6 +452,29 @@ impl Memory {
         let hermite = RatePolynomial::hermite(step.h, stroke, rate);
         let difference = (self.local.part(step, 1.0) - self.local.part(&hermite, 1.0)).abs();
         (difference - 6.0 * resolution * self.local.power(step.h) / step.h).max(0.0)
+    }
+
+    /// The same along a given motion, three nodes being at `places`: with [`Form::Hermite`] the most of what the stroke at the first node tells, of order
+    /// 7 − alpha, with [`Form::Rates`] the most of what all of them tell at a node, of order 5 − alpha.
+    pub(crate) fn defect_along(
+        &self,
+        step: &RatePolynomial,
+        (form, places): (Form, Option<&Places>),
+        known: [&[f64]; 2],
+        resolution: f64,
+    ) -> f64 {
+        if self.past.is_none() {
+            return 0.0;
+        }
+        if form == Form::Hermite {
+            let noise = NOISE_OF_BOTH * resolution / step.h;
+            return self.local.defect_of_both(step.h, places, (step.u[SEXTIC - 1].abs() - noise).max(0.0));
+        }
+        let both = RatePolynomial::through_strokes_and_rates(step.h, places, known);
+        let positions = places.map_or(Nodes::Radau.positions(), |places| places.positions());
+        let told = |theta: &f64| (self.local.part(&both, *theta) - self.local.part(step, *theta)).abs();
+        let noise = NOISE_AT_NODES * resolution * self.local.power(step.h) / step.h;
+        (positions.iter().map(told).fold(0.0, f64::max) - noise).max(0.0)
     }
 
     /// Energy of a unit springpot at t_n + θh; `rate` is x' there. The limits: ½(x − x(0))² or ½x² stored at alpha = 0,
@@ -477,7 +515,7 @@ impl Memory {
 
     /// Energy that a unit springpot stores after the last committed step; `stroke` and `rate` are x and x' there.
     pub fn stored(&self, stroke: f64, rate: f64) -> f64 {
-        self.energy(&RatePolynomial { h: 0.0, u: [0.0; 4] }, 0.0, stroke, rate).stored
+        self.energy(&RatePolynomial::NONE, 0.0, stroke, rate).stored
     }
 
     /// Takes an accepted step into the past: z_k ← e^{−λ_k h} z_k + ∫ e^{−λ_k(h−s)} x'(s) ds, exact for the polynomial.
@@ -495,13 +533,13 @@ impl Memory {
         let shortest = self.shortest_lag(step.h, places);
         // Whoever does not prepare steps asks for the next one with the same lags.
         if self.prepared.take().is_none() && places.is_none() {
-            self.prepare_lags(step.h, Nodes::Radau);
+            self.prepare_lags(step.h, Nodes::Radau, step.coefficients().len());
         }
         let local = self.local.part(as_found, 1.0);
         let Some(past) = &mut self.past else { return };
         self.travelled += step.travel();
         past.extend(shortest);
-        self.now = local + past.advance(step.h, &step.u, 0.0);
+        self.now = local + past.advance(step.h, step.coefficients(), 0.0);
         past.drop_surplus(shortest);
     }
 
@@ -577,7 +615,7 @@ impl Memory {
             (self.kind, self.origin) = (Kind::Caputo, mean);
         }
         if let Some(past) = &mut self.past {
-            past.recall(mode, last.h, &last.u);
+            past.recall(mode, last.h, last.coefficients());
             self.now = derivative;
         }
     }

@@ -82,6 +82,7 @@ pub use differintegral::{
 pub use kernel::{Kernel, KernelError};
 pub use kind::Kind;
 pub use memory::{Affine, Energy, Memory, StepStart};
+pub(crate) use step::SEXTIC;
 pub use step::{Form, RatePolynomial};
 pub use tangent::{
     EnergyTangent, MemoryTangent, RecalledTangent, Singular, TangentEnd, TangentPoint, TangentSeeds, TangentStep,

@@ -2,7 +2,7 @@
 
 use super::exponentials::moments;
 use super::memory::Memory;
-use super::step::RatePolynomial;
+use super::step::{RatePolynomial, SEXTIC};
 use crate::collocation::Nodes;
 
 /// d/ds of what a unit springpot tells at a lag s behind the last committed step.
@@ -52,11 +52,12 @@ impl Memory {
         };
         let kernel = past.kernel();
         for ((lambda, weight), z) in kernel.lambda.iter().zip(&kernel.weight).zip(past.modes()) {
-            let mut psi = [0.0; 4];
-            moments(lambda * lag, &mut psi);
+            let mut psi = [0.0; SEXTIC];
+            let psi = &mut psi[..step.coefficients().len()];
+            moments(lambda * lag, psi);
             let mut power = lag;
             let mut value = (-lambda * lag).exp() * z;
-            for (u, psi) in step.u.iter().zip(psi) {
+            for (u, psi) in step.u.iter().zip(&*psi) {
                 value += power * u * psi;
                 power *= theta;
             }

@@ -1,7 +1,8 @@
 //! What the exponentials make of one lag, kept for as long as it is asked for.
 
-use super::exponentials::{CUBIC, cubic_moments, decay, moments};
+use super::exponentials::{cubic_moments, decay, moments};
 use super::lanes::{Block, LANES, load, sum};
+use super::step::CUBIC;
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch, f64x8};
 

@@ -167,8 +167,10 @@ pub struct LocalError {
     pub error: f64,
     /// D^order x at the end of the step, without the share of a singular start: what the error is measured by.
     pub value: f64,
-    /// The order; the error falls like h^{4−order}.
+    /// The order.
     pub order: f64,
+    /// The error falls like the power of h with this exponent.
+    pub falls: f64,
     /// The exponent that brings an estimate of a lower order to that: 1 where it has it; 0 where it is a rate as it was told, of which whoever
     /// told it knows the error.
     pub sharpness: f64,
@@ -220,12 +222,15 @@ impl Step<'_> {
             (Form::Strokes, None) => RatePolynomial::through_strokes(self.h, self.nodes, self.stroke),
             (Form::Rates, Some(places)) => RatePolynomial::through_rates_at(self.h, places, self.rate),
             (Form::Strokes, Some(places)) => RatePolynomial::through_strokes_at(self.h, places, self.stroke),
+            (Form::Hermite, places) => {
+                RatePolynomial::through_strokes_and_rates(self.h, places, [self.stroke, self.rate])
+            }
         }
     }
 
     /// The start as a memory sees it; one that is told strokes does not ask for the rate.
     pub fn start(&self) -> StepStart {
-        let rate = if self.form == Form::Rates { self.rate[0] } else { 0.0 };
+        let rate = if self.form == Form::Strokes { 0.0 } else { self.rate[0] };
         StepStart { t: self.t, h: self.h, stroke: self.stroke[0], rate }
     }
 }

@@ -38,7 +38,7 @@ fn the_mean_is_exact_for_straight_strokes() {
                     let error = (mean - expected).abs() / expected;
                     assert!(error < 3e-10, "{alpha} {kind:?} {form:?} at {t}: {mean} {expected} {error:e}");
                 }
-                memory.commit(&RatePolynomial { h, u: [3.0, 0.0, 0.0, 0.0] });
+                memory.commit(&RatePolynomial::cubic(h, [3.0, 0.0, 0.0, 0.0]));
                 t += h;
             }
         }
@@ -58,7 +58,7 @@ fn the_work_of_the_mean_is_never_negative() {
             let affine = memory.respond(&start, Nodes::Midpoint, Form::Rates);
             work += h * rate * (affine.rate[0][0] * rate + affine.history[0]);
             assert!(work > 0.0, "{alpha}: {work} after step {k}");
-            memory.commit(&RatePolynomial { h, u: [rate, 0.0, 0.0, 0.0] });
+            memory.commit(&RatePolynomial::cubic(h, [rate, 0.0, 0.0, 0.0]));
             stroke += h * rate;
         }
     }

@@ -64,6 +64,25 @@ fn every_order_meets_the_tolerance() {
     }
 }
 
+/// Steps of one size of a motion of 8 rad/s: order 8 − alpha, and no less than the estimate of it, 7 − alpha.
+#[test]
+fn along_a_motion_the_order_is_eight_less_alpha() {
+    for alpha in [0.1, 0.3, 0.5, 0.7, 0.9] {
+        let of_step = |step: f64| {
+            let solver =
+                format!("\n[solver]\nrtol = 0.1\nmemory_rtol = 1e-12\nfirst_step = {step}\nmax_step = {step}\n");
+            let text = format!("{ARM}{}{SWING}{}{solver}", springpot(alpha, "caputo"), every(4.0, 0.04));
+            let run = run(&text);
+            assert!(run.effort() < 4.0f64.div_euclid(step) as u64 + 4, "{} steps", run.effort());
+            error(&text, &run, 0.1)
+        };
+        let errors = [0.08, 0.056, 0.04].map(of_step);
+        let order = (errors[0] / errors[2]).ln() / 2f64.ln();
+        println!("alpha = {alpha}: {errors:?}, order {order:.2}");
+        assert!(order > 6.9 - alpha && errors[2] > 1e-12, "alpha = {alpha}: {errors:?}, order {order}");
+    }
+}
+
 #[test]
 fn looser_tolerances_are_met_and_cheaper() {
     let mut last = u64::MAX;

@@ -132,6 +132,7 @@ fn the_affine_map_is_the_derivative() {
             for (nodes, form) in [
                 (Nodes::Radau, Form::Rates),
                 (Nodes::Radau, Form::Strokes),
+                (Nodes::Radau, Form::Hermite),
                 (Nodes::One, Form::Rates),
                 (Nodes::One, Form::Strokes),
             ] {
@@ -143,6 +144,7 @@ fn the_affine_map_is_the_derivative() {
                     let polynomial = match form {
                         Form::Rates => RatePolynomial::through_rates(h, nodes, &rate),
                         Form::Strokes => RatePolynomial::through_strokes(h, nodes, &stroke),
+                        Form::Hermite => RatePolynomial::through_strokes_and_rates(h, None, [&stroke, &rate]),
                     };
                     let start = StepStart { t, h, stroke: stroke[0], rate: rate[0] };
                     let affine = memory.respond(&start, nodes, form);

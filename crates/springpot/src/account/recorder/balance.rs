@@ -138,12 +138,12 @@ impl Recorder {
         (0..self.equations.bank.len()).any(|e| !self.equations.bank.takes_part(e))
     }
 
-    /// The largest of the first so many local errors of element `e` in units of their tolerances, and its order, where the stroke is about to be as
+    /// The largest of the first so many local errors of element `e` in units of their tolerances, and how it falls, where the stroke is about to be as
     /// fast as `rate` and what acts began at the time `since`: what has only begun is not looked at more closely than a share of what that leads
     /// to in the step.
     pub(crate) fn memory_error(&self, e: usize, first: usize, rate: f64, since: f64) -> (f64, f64) {
         let settings = &self.settings;
-        let mut worst = (0.0, 0.0);
+        let mut worst = (0.0, 4.0);
         // Strokes inside a series may begin like no power of t, alike on every scale of time: the very first steps err by what is soon nothing.
         let is_onset =
             self.equations.bank.from() + self.equations.bank.size() - since <= SHORTEST_LEDGER_STEP * settings.end;
@@ -157,7 +157,7 @@ impl Recorder {
             };
             // What is no number is no step to keep.
             if share > worst.0 || share.is_nan() {
-                worst = (share, error.order);
+                worst = (share, error.falls);
             }
         }
         worst

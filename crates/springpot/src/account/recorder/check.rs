@@ -1,7 +1,6 @@
 //! Whether the steps of a run saw what the motion does.
 
 use super::Recorder;
-use crate::collocation::{STAGES, lagrange_row};
 use crate::equations::context::Context;
 use crate::equations::control::Misread;
 use crate::observe::Snapshot;
@@ -18,7 +17,7 @@ impl Recorder {
         self.equations.misread(cx, allowed, &snapshot.evaluation)
     }
 
-    /// Compares the rates at θ of the step with what its memories were told, the cubic through its nodes: the first element that departs too
+    /// Compares the rates at θ of the step with what its memories were told, the polynomial through its nodes: the first element that departs too
     /// far, and how far in units of D^alpha x.
     ///
     /// A departure δx' that lasts a step adds up to δx'·h^{1−alpha} to D^alpha x.
@@ -27,15 +26,11 @@ impl Recorder {
         if theta >= 1.0 || h <= 0.0 {
             return None;
         }
-        let mut cubic = [0.0; STAGES + 1];
-        for (k, weight) in cubic.iter_mut().enumerate() {
-            *weight = lagrange_row(k).iter().rev().fold(0.0, |sum, c| sum * theta + c);
-        }
         let allowed = LEAST_DEPARTURE.max(DEPARTURE * self.settings.rtol);
         let taking_part = (0..self.equations.bank.len()).filter(|&e| self.equations.bank.takes_part(e));
         for e in taking_part {
             let [_, rates] = self.equations.bank.told(e);
-            let told: f64 = cubic.iter().zip(rates).map(|(w, rate)| w * rate).sum();
+            let told = self.equations.bank.rate_within(e, theta);
             let is = snapshot.evaluation.elements[e].reading.rate;
             // Parts in series share the stroke: what is little of all of it is no departure of any of them.
             let fastest = rates.iter().fold(is.abs(), |fastest, rate| fastest.max(rate.abs()));

@@ -184,7 +184,7 @@ impl Term {
     fn polynomial(&self) -> RatePolynomial {
         match self.form {
             Form::Rates => RatePolynomial::through_rates(self.start.h, self.nodes, &self.rate),
-            Form::Strokes => RatePolynomial::through_strokes(self.start.h, self.nodes, &self.stroke),
+            Form::Strokes | Form::Hermite => RatePolynomial::through_strokes(self.start.h, self.nodes, &self.stroke),
         }
     }
 
@@ -228,13 +228,12 @@ impl Term {
         if !self.is_integral() {
             return RatePolynomial::hermite(h, [e0, e1], [v0, v1]);
         }
-        let mut polynomial = RatePolynomial { h, u: [0.0; 4] };
-        if integrand == Integrand::Runs {
-            // The error itself, as the cubic through both ends and their rates.
-            let (d, s0, s1) = (e1 - e0, h * v0, h * v1);
-            polynomial.u = [e0, s0, 3.0 * d - 2.0 * s0 - s1, s0 + s1 - 2.0 * d];
+        if integrand != Integrand::Runs {
+            return RatePolynomial::cubic(h, [0.0; 4]);
         }
-        polynomial
+        // The error itself, as the cubic through both ends and their rates.
+        let (d, s0, s1) = (e1 - e0, h * v0, h * v1);
+        RatePolynomial::cubic(h, [e0, s0, 3.0 * d - 2.0 * s0 - s1, s0 + s1 - 2.0 * d])
     }
 
     fn take_past(&mut self, polynomial: &RatePolynomial, stroke: f64, rate: f64) {

@@ -6,6 +6,7 @@
 use super::ports::{Told, Weights};
 use crate::fractional::exponentials::moments;
 use crate::fractional::history::History;
+use crate::fractional::step::{CUBIC, SEXTIC};
 use std::sync::Arc;
 
 /// What an accepted step did to the past of a memory.
@@ -17,6 +18,8 @@ pub(crate) struct PastOfStep {
     is_first: bool,
     /// Width of the piece before, and of this one.
     widths: [f64; 2],
+    /// How many coefficients they have.
+    coefficients: [usize; 2],
     /// How many modes were put in front behind it, and how many of the fastest were dropped.
     front: usize,
     surplus: usize,
@@ -25,8 +28,14 @@ pub(crate) struct PastOfStep {
 }
 
 impl PastOfStep {
-    pub(super) fn new(kernel: Arc<History>, past: &History, h: f64, [front, surplus]: [usize; 2]) -> Self {
-        Self { kernel, is_first: past.is_empty(), widths: [past.last().0, h], front, surplus, moved: None }
+    pub(super) fn new(
+        kernel: Arc<History>,
+        past: &History,
+        (h, coefficients): (f64, [usize; 2]),
+        [front, surplus]: [usize; 2],
+    ) -> Self {
+        let widths = [past.last().0, h];
+        Self { kernel, is_first: past.is_empty(), widths, coefficients, front, surplus, moved: None }
     }
 
     /// Whether its end moves.
@@ -47,7 +56,7 @@ pub(crate) struct MemoryAdjoint {
     /// By each mode, M numbers each; empty before the last step that was taken into the past.
     modes: Vec<f64>,
     /// By the coefficients of the last piece.
-    piece: [Vec<f64>; 4],
+    piece: Vec<Vec<f64>>,
     ready: Vec<Ready>,
     taken: Option<Taken>,
 }
@@ -55,7 +64,7 @@ pub(crate) struct MemoryAdjoint {
 /// What counts of the step that was gone back over: of the coefficients of its piece, and of the time by which its end moves.
 #[derive(Debug)]
 pub(crate) struct OfStep {
-    pub(crate) piece: [Vec<f64>; 4],
+    pub(crate) piece: Vec<Vec<f64>>,
     pub(crate) moved: Option<Vec<f64>>,
 }
 
@@ -67,13 +76,13 @@ struct Ready {
     weighted: Vec<f64>,
 }
 
-/// e^{−X} and ψ_0 … ψ_3 of all modes of a kernel over a step.
+/// e^{−X} and ψ_0, ψ_1, … of all modes of a kernel over a step.
 #[derive(Debug, Clone)]
 struct Taken {
     kernel: Arc<History>,
     lag: f64,
     decay: Vec<f64>,
-    psi: [Vec<f64>; 4],
+    psi: Vec<Vec<f64>>,
 }
 
 /// Lags that are kept ready.
@@ -82,16 +91,16 @@ const LAGS: usize = 8;
 impl MemoryAdjoint {
     /// Of nothing, yet.
     pub(crate) fn new(count: usize) -> Self {
-        let zeros = || vec![0.0; count];
-        Self { count, modes: Vec::new(), piece: [(); 4].map(|()| zeros()), ready: Vec::new(), taken: None }
+        Self { count, modes: Vec::new(), piece: vec![vec![0.0; count]; CUBIC], ready: Vec::new(), taken: None }
     }
 
     /// Goes back over the piece that a step added: all is as before the step then, but for what of the past the step was told.
     pub(crate) fn take_back(&mut self, step: &PastOfStep) -> OfStep {
         let (count, kernel) = (self.count, step.kernel.kernel());
-        let [before, h] = step.widths;
+        let ([before, h], [of_before, coefficients]) = (step.widths, step.coefficients);
         let own = kernel.modes();
-        let mut earlier = [(); 4].map(|()| vec![0.0; count]);
+        self.piece.resize(coefficients, vec![0.0; count]);
+        let mut earlier = vec![vec![0.0; count]; of_before];
         let moved = step.moved.as_ref().map(|moved| {
             let mut sum = vec![0.0; count];
             let parts = moved.piece.iter().zip(&self.piece).map(|(factor, block)| (factor, &block[..]));
@@ -106,16 +115,29 @@ impl MemoryAdjoint {
         } else {
             self.modes.splice(0..0, std::iter::repeat_n(0.0, step.surplus * count));
         }
-        let add = |to: &mut [Vec<f64>; 4], factors: [f64; 4], block: &[f64]| {
+        let add = |to: &mut [Vec<f64>], factors: [f64; SEXTIC], block: &[f64]| {
             for (to, factor) in to.iter_mut().zip(factors) {
                 to.iter_mut().zip(block).for_each(|(to, z)| *to += factor * z);
             }
         };
         let (front, kept) = self.modes.split_at_mut(step.front * count);
         let taken = match self.taken.take() {
-            Some(taken) if taken.lag == h && Arc::ptr_eq(&taken.kernel, &step.kernel) => taken,
+            Some(taken)
+                if taken.lag == h && taken.psi.len() == coefficients && Arc::ptr_eq(&taken.kernel, &step.kernel) =>
+            {
+                taken
+            }
             _ => {
-                let (decay, psi) = step.kernel.moments(h);
+                let (decay, psi) = match coefficients {
+                    CUBIC => {
+                        let (decay, psi) = step.kernel.moments::<CUBIC>(h);
+                        (decay, psi.to_vec())
+                    }
+                    _ => {
+                        let (decay, psi) = step.kernel.moments::<SEXTIC>(h);
+                        (decay, psi.to_vec())
+                    }
+                };
                 Taken { kernel: step.kernel.clone(), lag: h, decay, psi }
             }
         };
@@ -131,11 +153,11 @@ impl MemoryAdjoint {
         self.taken = Some(taken);
         for (k, block) in (1..=step.front).rev().zip(front.chunks_exact(count)) {
             let (lambda, _) = kernel.faster(k);
-            let mut psi = [0.0; 4];
-            moments(lambda * h, &mut psi);
+            let mut psi = [0.0; SEXTIC];
+            moments(lambda * h, &mut psi[..coefficients]);
             add(&mut self.piece, psi.map(|psi| h * psi), block);
             if !step.is_first {
-                add(&mut earlier, settled(lambda, before, (-lambda * h).exp()), block);
+                add(&mut earlier, settled(lambda, before, (-lambda * h).exp(), of_before), block);
             }
         }
         self.modes.drain(..step.front * count);
@@ -152,6 +174,7 @@ impl MemoryAdjoint {
             (Told::Lag(_), None) => self.piece.iter_mut().for_each(|piece| piece.fill(f64::NAN)),
             (Told::Sum(Weights { modes, piece }), _) => {
                 self.modes.resize(modes.len() * self.count, 0.0);
+                self.piece.resize(piece.len().max(self.piece.len()), vec![0.0; self.count]);
                 let own = self.piece.iter_mut().map(|own| &mut own[..]);
                 let blocks = self.modes.chunks_exact_mut(self.count).chain(own);
                 for (block, factor) in blocks.zip(modes.iter().chain(piece)) {
@@ -165,6 +188,8 @@ impl MemoryAdjoint {
         if step.is_first {
             return;
         }
+        let [before, _] = step.coefficients;
+        self.piece.resize(before, vec![0.0; self.count]);
         let (count, kernel) = (self.count, step.kernel.kernel());
         self.modes.resize(kernel.modes() * count, 0.0);
         let place = self.place(&step.kernel, lag);
@@ -173,7 +198,7 @@ impl MemoryAdjoint {
         }
         for k in 1..=kernel.missing(lag) {
             let (lambda, weight) = kernel.faster(k);
-            let factors = settled(lambda, step.widths[0], weight * (-lambda * lag).exp());
+            let factors = settled(lambda, step.widths[0], weight * (-lambda * lag).exp(), before);
             for (piece, factor) in self.piece.iter_mut().zip(factors) {
                 piece.iter_mut().zip(by).for_each(|(piece, by)| *piece += factor * by);
             }
@@ -195,14 +220,14 @@ impl MemoryAdjoint {
 }
 
 /// What a mode that knows the last piece alone has of its coefficients, times `share`.
-fn settled(lambda: f64, width: f64, share: f64) -> [f64; 4] {
-    let mut psi = [0.0; 4];
-    moments(lambda * width, &mut psi);
+fn settled(lambda: f64, width: f64, share: f64, coefficients: usize) -> [f64; SEXTIC] {
+    let mut psi = [0.0; SEXTIC];
+    moments(lambda * width, &mut psi[..coefficients]);
     psi.map(|psi| share * (width * psi))
 }
 
 impl Weights {
     pub(crate) fn bytes(&self) -> usize {
-        size_of::<Self>() + size_of_val(&self.modes[..])
+        size_of::<Self>() + size_of_val(&self.modes[..]) + size_of_val(&self.piece[..])
     }
 }

@@ -4,11 +4,12 @@ use super::columns::add;
 use super::order::{ByOrder, local_moments};
 use super::ports::{MEAN, Weights, key};
 use super::{MemoryTangent, TangentPoint, TangentStep};
+use crate::collocation::NODE_POLYNOMIAL;
 use crate::collocation::Nodes;
 use crate::fractional::history::History;
 use crate::fractional::kind::Kind;
 use crate::fractional::memory::{Memory, NEXT_TO_NODE};
-use crate::fractional::step::{Form, NODE_POLYNOMIAL};
+use crate::fractional::step::{CUBIC, Form, SEXTIC};
 use fearless_simd::{Level, dispatch};
 
 /// What stands for parts of D^α x that are infinite at a time at or before the start of a step.
@@ -54,7 +55,12 @@ impl MemoryTangent {
                     add(self.row(out, i), -factors.iter().sum::<f64>(), start.delta_stroke);
                 }
                 // x' itself.
-                (Form::Rates, _) if !memory.is_fractional() => {}
+                (Form::Rates | Form::Hermite, _) if !memory.is_fractional() => {}
+                (Form::Hermite, places) => {
+                    let (rates, strokes) = local.rows_of_both(h, i, places);
+                    add(self.row(out, i), rates[0], start.delta_rate);
+                    add(self.row(out, i), -strokes.iter().sum::<f64>(), start.delta_stroke);
+                }
                 (Form::Rates, places) => {
                     let factors = match places {
                         None => local.rate_row(h, i, step.nodes),
@@ -97,9 +103,9 @@ impl MemoryTangent {
         let [_, d2, _] = past.fast_tail();
         if let Some(ports) = &self.ports {
             let weights = || {
-                let [psi, ..] = past.moments(h).1;
+                let [psi, ..]: [_; CUBIC] = past.moments(h).1;
                 let modes = past.kernel().weight.iter().zip(psi).map(|(weight, psi)| weight * psi).collect();
-                Weights { modes, piece: [0, 1, 2, 3].map(|_| d2 / h) }
+                Weights { modes, piece: vec![d2 / h; CUBIC] }
             };
             match ports.column_of_sum(key(MEAN, h, h), weights) {
                 Some(column) => out[column] += 1.0,
@@ -112,16 +118,16 @@ impl MemoryTangent {
             #[inline(always)]
             |k| {
                 let [_, weight, _] = past.block(simd, k);
-                let (_, [psi, ..]) = at.moments(simd, k);
+                let (_, [psi, ..]): (_, [_; CUBIC]) = at.moments(simd, k);
                 [weight * psi]
             },
             [&mut *out],
         ));
-        (0..4).for_each(|p| add(out, d2 / h, self.piece.row(p)));
+        (0..self.piece.rows()).for_each(|p| add(out, d2 / h, self.piece.row(p)));
     }
 
     /// The derivative of D^α x without singular parts at θ, 0 < θ ≤ 1, whose kinematics are those of `point`; `delta_u` is that of the
-    /// coefficients u_p of the step, 4 rows of P.
+    /// coefficients u_p of the step, rows of P.
     ///
     /// It is that of [`Memory::derivative_between`] inside a step of rates at Radau nodes, else of [`Memory::regular_derivative`].
     pub fn at(
@@ -147,11 +153,11 @@ impl MemoryTangent {
             let nodes = step.places.map_or(NODE_POLYNOMIAL, |places| places.node_polynomial());
             let node = nodes.iter().rev().fold(0.0, |sum, c| sum * theta + c);
             let weight = node / (node * node + NEXT_TO_NODE);
-            let between = |moments: &[f64; 5]| weight * nodes.iter().zip(moments).map(|(n, m)| n * m).sum::<f64>();
-            let shift = |moments: &mut [f64; 5]| {
+            let between = |moments: &[f64]| weight * nodes.iter().zip(moments).map(|(n, m)| n * m).sum::<f64>();
+            let shift = |moments: &mut [f64; SEXTIC]| {
                 let between = between(moments);
                 let mut power = 1.0;
-                for moment in &mut moments[..4] {
+                for moment in &mut moments[..CUBIC] {
                     *moment -= between * power;
                     power *= theta;
                 }
@@ -162,7 +168,10 @@ impl MemoryTangent {
                 *history += shift(local) * point.rate;
             }
         }
-        (0..4).for_each(|p| add(out, moments[p], &delta_u[p * self.parameters..][..self.parameters]));
+        moments
+            .into_iter()
+            .zip(delta_u.chunks_exact(self.parameters.max(1)))
+            .for_each(|(moment, row)| add(out, moment, row));
         self.add_histories(past, [lag], out);
         if let Some((local, history)) = by_order {
             let moved: f64 = u.u.iter().zip(local).map(|(u, moment)| u * moment).sum();

@@ -1,8 +1,8 @@
 //! P derivatives side by side for every mode of a history.
 
-use super::super::exponentials::CUBIC;
 use super::super::history::Lag;
 use super::super::lanes::{Block, LANES, load};
+use super::super::step::{CUBIC, SEXTIC};
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch, f64x8};
 use serde::{Deserialize, Serialize};
@@ -98,33 +98,39 @@ impl Columns {
         }
     }
 
-    /// Takes every row z to e^{−X} z + h Σ_p y_p ψ_p(X), where the rows of `piece` are the y_p.
+    /// Takes every row z to e^{−X} z + h Σ_p y_p ψ_p(X), where the rows of `piece`, as many as the lag is ready for, are the y_p.
     pub(super) fn advance(&mut self, lag: Lag, h: f64, piece: &Self) {
-        dispatch!(Level::new(), simd => self.advance_with(simd, lag, h, piece));
+        dispatch!(Level::new(), simd => match piece.rows() {
+            CUBIC => self.advance_with::<_, CUBIC>(simd, lag, h, piece),
+            _ => self.advance_with::<_, SEXTIC>(simd, lag, h, piece),
+        });
     }
 
     #[inline(always)]
-    fn advance_with<S: Simd>(&mut self, simd: S, lag: Lag, h: f64, piece: &Self) {
+    fn advance_with<S: Simd, const N: usize>(&mut self, simd: S, lag: Lag, h: f64, piece: &Self) {
         let width = self.width();
         if width == 0 {
             return;
         }
         for (k, rows) in self.values.chunks_mut(LANES * width).enumerate() {
-            let (decay, psi) = lag.moments(simd, k);
-            let mut shares = [[0.0; LANES]; CUBIC];
-            for p in 0..CUBIC {
+            let (decay, psi): (_, [_; N]) = lag.moments(simd, k);
+            let mut shares = [[0.0; LANES]; N];
+            for p in 0..N {
                 (psi[p] * h).store_array(&mut shares[p]);
             }
             let mut decays = [0.0; LANES];
             decay.store_array(&mut decays);
-            let [first, second, third, last] = &shares;
             for b in 0..width {
-                let y = [0, 1, 2, 3].map(|p| &piece.values[p * width + b]);
-                let y = [load(simd, y[0]), load(simd, y[1]), load(simd, y[2]), load(simd, y[3])];
+                let mut y = [f64x8::splat(simd, 0.0); N];
+                for p in 0..N {
+                    y[p] = load(simd, &piece.values[p * width + b]);
+                }
                 for (l, row) in rows.chunks_exact_mut(width).enumerate().take(LANES) {
-                    let kept = load(simd, &row[b]) * decays[l];
-                    let grown = (y[0] * first[l] + y[1] * second[l]) + (y[2] * third[l] + y[3] * last[l]);
-                    (kept + grown).store_array(&mut row[b]);
+                    let mut next = load(simd, &row[b]) * decays[l] + y[0] * shares[0][l];
+                    for p in 1..N {
+                        next += y[p] * shares[p][l];
+                    }
+                    next.store_array(&mut row[b]);
                 }
             }
         }

@@ -5,6 +5,7 @@ use super::{MemoryTangent, TangentStep};
 use crate::fractional::exponentials::moments;
 use crate::fractional::history::History;
 use crate::fractional::memory::{Debt, Memory};
+use crate::fractional::step::{CUBIC, SEXTIC};
 
 /// Where a step of rates ends, as [`Memory::commit_rates`] is told.
 #[derive(Debug, Clone, Copy)]
@@ -19,7 +20,7 @@ pub struct TangentEnd<'a> {
 
 impl MemoryTangent {
     /// Takes an accepted step into the past, before the memory does; `delta_u` is the derivative of the coefficients u_p of its polynomial,
-    /// 4 rows of P.
+    /// rows of P.
     ///
     /// With `end` what [`Memory::commit_rates`] does is differentiated, else [`Memory::commit`]. Of a debt the same share is paid as the
     /// memory pays of its own, none where it pays none.
@@ -33,11 +34,15 @@ impl MemoryTangent {
         let front: Vec<f64> = (1..=missing).rev().map(|k| past.kernel().faster(k).0).collect();
         let mut fast = (missing > 0 && self.ports.is_none()).then(|| self.settled(past, &front, h));
 
-        for p in 0..4 {
+        let (before, coefficients) = (self.piece.rows(), step.coefficients());
+        if before != coefficients {
+            self.piece = Columns::new(parameters, coefficients);
+        }
+        for p in 0..coefficients {
             self.piece.row_mut(p).copy_from_slice(&delta_u[p * parameters..][..parameters]);
         }
         let travel = |piece: &Columns, out: &mut [f64]| {
-            (0..4).for_each(|p| add(out, h / (p + 1) as f64, piece.row(p)));
+            (0..coefficients).for_each(|p| add(out, h / (p + 1) as f64, piece.row(p)));
         };
         travel(&self.piece, &mut self.travelled);
         let mut paid = *polynomial;
@@ -55,12 +60,12 @@ impl MemoryTangent {
         }
         let surplus = if missing > 0 { 0 } else { past.surplus(shortest) };
         if let Some(ports) = &mut self.ports {
-            ports.commit(past, h, [missing, surplus]);
+            ports.commit(past, h, [before, coefficients], [missing, surplus]);
         } else {
             if let Some(fast) = &mut fast {
                 self.grow(fast, &front, h);
             }
-            self.modes.advance(past.lag(h), h, &self.piece);
+            self.modes.advance(past.lag_of(h, coefficients), h, &self.piece);
             self.fold(memory, past, step.start.t + h, h);
             if let Some(fast) = fast {
                 self.modes.put_in_front(fast);
@@ -68,7 +73,7 @@ impl MemoryTangent {
             self.modes.drop_front(surplus);
         }
         if let Some(by_order) = &mut self.by_order {
-            by_order.slow.advance(h, &paid.u, 0.0);
+            by_order.slow.advance(h, paid.coefficients(), 0.0);
             by_order.follow(past.kernel(), &front, surplus);
         }
     }
@@ -93,18 +98,18 @@ impl MemoryTangent {
         let debt = end.and_then(|end| memory.debt(polynomial, end.stroke, end.resolution));
         let paid = debt.map_or(0.0, |debt| debt.rate);
         let modes = past.kernel().lambda.iter().zip(past.modes()).map(|(lambda, z)| {
-            let mut psi = [0.0; 4];
+            let mut psi = [0.0; CUBIC];
             moments(lambda * h, &mut psi);
             (rate + paid - lambda * z) - paid * psi[0]
         });
-        let [_, u1, u2, u3] = polynomial.u;
-        let bent = [u1 / h, 2.0 * u2 / h, 3.0 * u3 / h];
+        let mut bent = polynomial.bent();
+        bent[0] -= paid / h;
+        let bent = &bent[..self.piece.rows()];
         match &mut self.ports {
-            Some(ports) => ports.move_end(modes.collect(), [bent[0] - paid / h, bent[1], bent[2], 0.0], delta_h),
+            Some(ports) => ports.move_end(modes.collect(), bent.to_vec(), delta_h),
             None => {
                 modes.enumerate().for_each(|(k, share)| add(self.modes.row_mut(k), share, delta_h));
-                add(self.piece.row_mut(0), -paid / h, delta_h);
-                bent.into_iter().enumerate().for_each(|(p, slope)| add(self.piece.row_mut(p), slope, delta_h));
+                bent.iter().enumerate().for_each(|(p, slope)| add(self.piece.row_mut(p), *slope, delta_h));
             }
         }
     }
@@ -115,7 +120,10 @@ impl MemoryTangent {
         let mut now = std::mem::take(&mut self.now);
         now.fill(0.0);
         let moments = super::order::local_moments(memory.local(), h, 1.0);
-        (0..4).for_each(|p| add(&mut now, moments[p], &delta_u[p * self.parameters..][..self.parameters]));
+        moments
+            .into_iter()
+            .zip(delta_u.chunks_exact(self.parameters.max(1)))
+            .for_each(|(moment, row)| add(&mut now, moment, row));
         self.add_histories(past, [h], &mut now);
         if let Some(by_order) = &self.by_order {
             let moved = by_order.local(memory.local(), &step.polynomial, 1.0) + by_order.history(past, h);
@@ -130,8 +138,9 @@ impl MemoryTangent {
         for (k, lambda) in rates.iter().enumerate() {
             let share = (-lambda * h).exp();
             if !past.is_empty() {
-                let factors = past.fast_moments(*lambda);
-                (0..4).for_each(|p| add(modes.row_mut(k), share * factors[p], self.piece.row(p)));
+                let coefficients = self.piece.rows();
+                let factors = past.fast_moments(*lambda, coefficients);
+                (0..coefficients).for_each(|p| add(modes.row_mut(k), share * factors[p], self.piece.row(p)));
             }
         }
         modes
@@ -140,9 +149,10 @@ impl MemoryTangent {
     /// Adds what such modes take in of the piece.
     fn grow(&self, modes: &mut Columns, rates: &[f64], h: f64) {
         for (k, lambda) in rates.iter().enumerate() {
-            let mut psi = [0.0; 4];
-            moments(lambda * h, &mut psi);
-            (0..4).for_each(|p| add(modes.row_mut(k), h * psi[p], self.piece.row(p)));
+            let mut psi = [0.0; SEXTIC];
+            let psi = &mut psi[..self.piece.rows()];
+            moments(lambda * h, psi);
+            (0..psi.len()).for_each(|p| add(modes.row_mut(k), h * psi[p], self.piece.row(p)));
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::fractional::exponentials::moments;
 use crate::fractional::history::{History, Squares};
 use crate::fractional::lanes::{LANES, sum};
 use crate::fractional::memory::{Memory, StepStart};
-use crate::fractional::step::{Form, RatePolynomial};
+use crate::fractional::step::{CUBIC, Form, RatePolynomial, SEXTIC};
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch, f64x8};
 
@@ -30,7 +30,7 @@ impl EnergyTangent<'_> {
 /// What both forms have of δu_p and of δα.
 #[derive(Default)]
 struct Grown {
-    by_u: [[f64; 4]; 2],
+    by_u: [[f64; SEXTIC]; 2],
     by_order: [f64; 2],
 }
 
@@ -38,7 +38,7 @@ struct Grown {
 #[derive(Default)]
 struct OfPast {
     modes: [Vec<f64>; 2],
-    piece: [[f64; 4]; 2],
+    piece: [[f64; SEXTIC]; 2],
 }
 
 impl MemoryTangent {
@@ -64,7 +64,10 @@ impl MemoryTangent {
         let polynomial = &step.polynomial;
         let longer = if polynomial.h > 0.0 { past.extended(Nodes::Radau.positions()[0] * polynomial.h) } else { None };
         let mut of_past = self.ports.as_ref().filter(|ports| !ports.has_no_sums()).map(|_| OfPast::default());
-        let grown = self.add_modes(past, polynomial, theta, &mut of_past, out.rows());
+        let grown = match step.coefficients() {
+            CUBIC => self.add_modes::<CUBIC>(past, polynomial, theta, &mut of_past, out.rows()),
+            _ => self.add_modes::<SEXTIC>(past, polynomial, theta, &mut of_past, out.rows()),
+        };
         self.add_grown(&grown, theta, delta_u, out.rows());
         if let Some(longer) = &longer {
             let front = longer.kernel().modes() - past.kernel().modes();
@@ -80,7 +83,7 @@ impl MemoryTangent {
     /// The derivative of [`Memory::stored`] at t, between two steps, and of the rate of dissipation there.
     pub fn energy_now(&self, memory: &Memory, t: f64, point: &TangentPoint, out: &mut EnergyTangent) {
         let start = StepStart { t, h: 0.0, stroke: point.stroke, rate: point.rate };
-        let polynomial = RatePolynomial { h: 0.0, u: [0.0; 4] };
+        let polynomial = RatePolynomial::NONE;
         let step = TangentStep { start, nodes: Nodes::Radau, places: None, form: Form::Rates, polynomial };
         self.energy(memory, &step, 0.0, point, &[], out);
     }
@@ -95,7 +98,7 @@ impl MemoryTangent {
     }
 
     /// The modes that are kept, with what moves by δz added.
-    fn add_modes(
+    fn add_modes<const N: usize>(
         &self,
         past: &History,
         step: &RatePolynomial,
@@ -104,15 +107,15 @@ impl MemoryTangent {
         [stored, dissipation]: [&mut [f64]; 2],
     ) -> Grown {
         let lag = theta * step.h;
-        let at = past.lag(lag);
+        let at = past.lag_of(lag, N);
         let scaled = scaled(step, theta);
         let mut grown = Grown::default();
         dispatch!(Level::new(), simd => {
-            let (mut by_u, mut by_order) = ([[f64x8::splat(simd, 0.0); 4]; 2], [f64x8::splat(simd, 0.0); 2]);
+            let (mut by_u, mut by_order) = ([[f64x8::splat(simd, 0.0); N]; 2], [f64x8::splat(simd, 0.0); 2]);
             let mut seen = 0;
             let mut weights = inlined(#[inline(always)] |k| {
                 let [lambda, weight, z] = past.block(simd, k);
-                let (decay, psi) = at.moments(simd, k);
+                let (decay, psi): (_, [_; N]) = at.moments(simd, k);
                 let value = mode(z, decay, psi, &scaled, lag);
                 let stored = weight * value;
                 let forms = [stored, stored * lambda * 2.0];
@@ -121,7 +124,7 @@ impl MemoryTangent {
                     seen += 1;
                     for q in 0..2 {
                         let grown = forms[q] * lag;
-                        for p in 0..4 {
+                        for p in 0..N {
                             by_u[q][p] += grown * psi[p];
                         }
                         if let Some(order) = &self.by_order {
@@ -145,7 +148,7 @@ impl MemoryTangent {
                 }
             }
             for q in 0..2 {
-                for p in 0..4 {
+                for p in 0..N {
                     grown.by_u[q][p] = sum(by_u[q][p]);
                 }
                 grown.by_order[q] = sum(by_order[q]);
@@ -161,10 +164,12 @@ impl MemoryTangent {
 
     fn add_grown(&self, grown: &Grown, theta: f64, delta_u: &[f64], [stored, dissipation]: [&mut [f64]; 2]) {
         for (q, out) in [stored, dissipation].into_iter().enumerate() {
-            let mut power = 1.0;
             // At the start of a step nothing of it has grown.
-            for p in 0..if theta == 0.0 { 0 } else { 4 } {
-                add(out, power * grown.by_u[q][p], &delta_u[p * self.parameters..][..self.parameters]);
+            let mut power = 1.0;
+            for (by_u, row) in
+                grown.by_u[q].iter().zip(delta_u.chunks_exact(self.parameters.max(1))).take_while(|_| theta > 0.0)
+            {
+                add(out, power * by_u, row);
                 power *= theta;
             }
             add(out, grown.by_order[q], &self.alpha);
@@ -181,21 +186,21 @@ impl MemoryTangent {
         of_past: &mut Option<OfPast>,
         out: [&mut [f64]; 2],
     ) {
-        let (lag, scaled) = (theta * step.h, scaled(step, theta));
-        let (mut grown, mut by_last) = (Grown::default(), [[0.0; 4]; 2]);
+        let (lag, scaled, coefficients) = (theta * step.h, scaled(step, theta), delta_u.len() / self.parameters.max(1));
+        let (mut grown, mut by_last) = (Grown::default(), [[0.0; SEXTIC]; 2]);
         let kernel = longer.kernel();
         for k in 0..front {
             let (lambda, weight) = (kernel.lambda[k], kernel.weight[k]);
-            let mut psi = [0.0; 4];
-            moments(lambda * lag, &mut psi);
+            let mut psi = [0.0; SEXTIC];
+            moments(lambda * lag, &mut psi[..coefficients]);
             let decay = (-lambda * lag).exp();
             let taken: f64 = scaled.iter().zip(psi).map(|(y, psi)| y * psi).sum();
             let value = decay * longer.fast_mode(lambda) + lag * taken;
             // What is stored at the start of a step was stored without them.
             let stored = if theta == 0.0 { 0.0 } else { weight * value };
             for (q, form) in [stored, 2.0 * weight * lambda * value].into_iter().enumerate() {
-                let last = longer.fast_moments(lambda);
-                for p in 0..4 {
+                let last = longer.fast_moments(lambda, self.piece.rows());
+                for p in 0..SEXTIC {
                     grown.by_u[q][p] += form * lag * psi[p];
                     by_last[q][p] += form * decay * last[p];
                 }
@@ -209,7 +214,7 @@ impl MemoryTangent {
             Some(of_past) => of_past.piece = by_last,
             None => {
                 for (by_last, out) in by_last.iter().zip([&mut *stored, &mut *dissipation]) {
-                    (0..4).for_each(|p| add(out, by_last[p], self.piece.row(p)));
+                    (0..self.piece.rows()).for_each(|p| add(out, by_last[p], self.piece.row(p)));
                 }
             }
         }
@@ -222,7 +227,10 @@ impl MemoryTangent {
         let OfPast { modes: [first, second], piece: [of_first, of_second] } = told.unwrap_or_default();
         let sums = [(STORED, first, of_first), (DISSIPATED, second, of_second)];
         for (out, (which, modes, piece)) in out.into_iter().zip(sums) {
-            match ports.column_of_sum(key(which, theta * h, h), || Weights { modes, piece }) {
+            match ports.column_of_sum(key(which, theta * h, h), || {
+                let piece = piece[..self.piece.rows()].to_vec();
+                Weights { modes, piece }
+            }) {
                 Some(column) => out[column] += 1.0,
                 None => out.fill(f64::NAN),
             }
@@ -245,10 +253,10 @@ impl MemoryTangent {
         add(dissipation, 2.0 * (d1 * rate - d2 * bend), point.delta_rate);
         let by_bend = 2.0 * (d3 * bend - d2 * rate);
         if step.h > 0.0 {
-            let slopes = [1.0, 2.0 * theta, 3.0 * theta * theta];
-            for (p, slope) in slopes.into_iter().enumerate() {
-                let row = &delta_u[(p + 1) * self.parameters..][..self.parameters];
-                add(dissipation, by_bend * slope / step.h, row);
+            let mut power = by_bend / step.h;
+            for (p, row) in delta_u.chunks_exact(self.parameters.max(1)).enumerate().skip(1) {
+                add(dissipation, p as f64 * power, row);
+                power *= theta;
             }
         }
         if let Some(order) = &self.by_order {
@@ -271,12 +279,12 @@ impl MemoryTangent {
         let (lag, scaled, bend) = (theta * polynomial.h, scaled(polynomial, theta), polynomial.bend(theta));
         for jump in &self.jumps {
             let age = step.start.t + lag - jump.t;
-            let (at, since) = (past.lag(lag), past.lag(age));
+            let (at, since) = (past.lag_of(lag, SEXTIC), past.lag(age));
             let [mut plain, mut rated] = dispatch!(Level::new(), simd => {
                 let mut totals = [f64x8::splat(simd, 0.0); 2];
                 for k in 0..past.blocks() {
                     let [lambda, _, z] = past.block(simd, k);
-                    let (decay, psi) = at.moments(simd, k);
+                    let (decay, psi): (_, [_; SEXTIC]) = at.moments(simd, k);
                     let value = since.weighted(simd, k) * mode(z, decay, psi, &scaled, lag);
                     totals[0] += value;
                     totals[1] += value * lambda * 2.0;
@@ -308,7 +316,7 @@ fn inlined<I, O, F: FnMut(I) -> O>(closure: F) -> F {
 }
 
 /// u_p θ^p.
-fn scaled(step: &RatePolynomial, theta: f64) -> [f64; 4] {
+fn scaled(step: &RatePolynomial, theta: f64) -> [f64; SEXTIC] {
     let mut power = 1.0;
     step.u.map(|u| {
         let coefficient = power * u;
@@ -319,7 +327,16 @@ fn scaled(step: &RatePolynomial, theta: f64) -> [f64; 4] {
 
 /// A block of modes at the lag, whose moments are `decay` and `psi`.
 #[inline(always)]
-fn mode<S: Simd>(z: f64x8<S>, decay: f64x8<S>, psi: [f64x8<S>; 4], y: &[f64; 4], lag: f64) -> f64x8<S> {
-    let [a, b, c, d] = psi;
-    decay * z + (a * y[0] + b * y[1] + c * y[2] + d * y[3]) * lag
+fn mode<S: Simd, const N: usize>(
+    z: f64x8<S>,
+    decay: f64x8<S>,
+    psi: [f64x8<S>; N],
+    y: &[f64; SEXTIC],
+    lag: f64,
+) -> f64x8<S> {
+    let mut grown = psi[0] * y[0];
+    for p in 1..N {
+        grown += psi[p] * y[p];
+    }
+    decay * z + grown * lag
 }

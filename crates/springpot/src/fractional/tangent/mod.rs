@@ -69,7 +69,7 @@ use super::history::History;
 use super::kernel::KernelError;
 use super::kind::Kind;
 use super::memory::{Memory, StepStart};
-use super::step::{Form, RatePolynomial};
+use super::step::{CUBIC, Form, RatePolynomial, SEXTIC};
 use crate::collocation::{MAX_NODES, Nodes, Places};
 use columns::{Columns, add, rows};
 use fearless_simd::prelude::*;
@@ -123,24 +123,40 @@ impl TangentStep<'_> {
         self.places.map_or(self.nodes.positions(), |places| places.positions())
     }
 
-    /// The derivative of the coefficients u_p, 4 rows of P, from those of strokes and rates at 0 and at the nodes, s + 1 rows of P each.
+    /// How many coefficients its polynomial has: 7 with [`Form::Hermite`], else 4.
+    pub fn coefficients(&self) -> usize {
+        self.form.coefficients()
+    }
+
+    /// The derivative of the coefficients u_p of its polynomial, as many rows of P, from those of strokes and rates at 0 and at the nodes, s + 1 rows of P each.
     pub fn delta_polynomial(&self, delta_stroke: &[f64], delta_rate: &[f64], out: &mut [f64]) {
-        let parameters = out.len() / 4;
+        let parameters = out.len() / self.coefficients();
+        if self.form == Form::Hermite {
+            // What the strokes tell beside the rates is a small difference.
+            for j in 0..parameters {
+                let [stroke, rate] =
+                    [delta_stroke, delta_rate].map(|all| [0, 1, 2, 3].map(|k| all[k * parameters + j]));
+                let known = [&stroke[..], &rate];
+                let RatePolynomial { u, .. } =
+                    RatePolynomial::through_strokes_and_rates(self.start.h, self.places, known);
+                out[j..].iter_mut().step_by(parameters).zip(u).for_each(|(out, u)| *out = u);
+            }
+            return;
+        }
         out.fill(0.0);
-        let data = if self.form == Form::Rates { delta_rate } else { delta_stroke };
-        for k in 0..=self.nodes.count() {
+        let count = self.nodes.count();
+        for k in 0..=count {
             let mut unit = [0.0; MAX_NODES + 1];
             unit[k] = 1.0;
-            let values = &unit[..=self.nodes.count()];
-            let h = self.start.h;
-            let column = match (self.form, self.places) {
-                (Form::Rates, None) => RatePolynomial::through_rates(h, self.nodes, values),
-                (Form::Strokes, None) => RatePolynomial::through_strokes(h, self.nodes, values),
-                (Form::Rates, Some(places)) => RatePolynomial::through_rates_at(h, places, values),
-                (Form::Strokes, Some(places)) => RatePolynomial::through_strokes_at(h, places, values),
+            let (values, h) = (&unit[..=count], self.start.h);
+            let (column, data) = match (self.form, self.places) {
+                (Form::Strokes, None) => (RatePolynomial::through_strokes(h, self.nodes, values), delta_stroke),
+                (Form::Strokes, Some(places)) => (RatePolynomial::through_strokes_at(h, places, values), delta_stroke),
+                (_, None) => (RatePolynomial::through_rates(h, self.nodes, values), delta_rate),
+                (_, Some(places)) => (RatePolynomial::through_rates_at(h, places, values), delta_rate),
             };
-            for (p, factor) in column.u.into_iter().enumerate() {
-                add(&mut out[p * parameters..][..parameters], factor, &data[k * parameters..][..parameters]);
+            for p in 0..CUBIC {
+                add(&mut out[p * parameters..][..parameters], column.u[p], &data[k * parameters..][..parameters]);
             }
         }
     }
@@ -205,7 +221,7 @@ impl MemoryTangent {
             told: None,
             jumps: Vec::new(),
             modes: Columns::new(parameters, 0),
-            piece: Columns::new(parameters, 4),
+            piece: Columns::new(parameters, CUBIC),
             by_order: None,
             is_recalled: false,
             ports: None,
@@ -320,15 +336,16 @@ impl MemoryTangent {
 
     /// The same of the modes in front of the kernel, which know the last piece alone.
     fn add_missing(&self, past: &History, lag: f64, out: &mut [f64]) {
-        let mut factors = [0.0; 4];
+        let mut factors = [0.0; SEXTIC];
         for k in 1..=past.kernel().missing(lag) {
             let (lambda, weight) = past.kernel().faster(k);
             let share = weight * (-lambda * lag).exp();
-            factors.iter_mut().zip(past.fast_moments(lambda)).for_each(|(factor, moment)| *factor += share * moment);
+            factors
+                .iter_mut()
+                .zip(past.fast_moments(lambda, self.piece.rows()))
+                .for_each(|(factor, moment)| *factor += share * moment);
         }
-        for (p, factor) in factors.into_iter().enumerate() {
-            add(out, factor, self.piece.row(p));
-        }
+        (0..self.piece.rows()).for_each(|p| add(out, factors[p], self.piece.row(p)));
     }
 
     /// Puts the derivative of a past before the first step, after [`Memory`] was given that past: z of modes as a function of their λ,
@@ -343,7 +360,8 @@ impl MemoryTangent {
         for (k, lambda) in history.kernel().lambda.iter().enumerate() {
             (past.delta_mode)(*lambda, self.modes.row_mut(k));
         }
-        for p in 0..4 {
+        self.piece = Columns::new(self.parameters, CUBIC);
+        for p in 0..CUBIC {
             self.piece.row_mut(p).copy_from_slice(&past.delta_last[p * self.parameters..][..self.parameters]);
         }
         self.now.copy_from_slice(past.delta_derivative);

@@ -10,7 +10,7 @@ use super::super::history::{History, Lag};
 use super::super::kernel::{Kernel, LARGEST_TAIL, geometric_measure, strength};
 use super::super::lanes::{Block, blocks, load, sum};
 use super::super::local::Local;
-use super::super::step::RatePolynomial;
+use super::super::step::{CUBIC, RatePolynomial, SEXTIC};
 use crate::linalg::gauss_rules;
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch, f64x8};
@@ -32,8 +32,8 @@ const SAME: f64 = 1e-9;
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct ByOrder {
     alpha: f64,
-    /// ψ(p+2−α), p = 0…4.
-    digamma: [f64; 5],
+    /// ψ(p+2−α), p = 0…6.
+    digamma: [f64; SEXTIC],
     /// ẇ/w of the modes of the memory; 0 for those of its tail, for which `slow` stands.
     ratio: Vec<Block>,
     modes: usize,
@@ -54,8 +54,8 @@ impl ByOrder {
     /// Of a kernel that has its slowest modes from [`Kernel::new`].
     pub(super) fn of(kernel: &Kernel) -> Self {
         let (slow, tail) = slow_tail(kernel);
-        let mut digammas = [digamma(2.0 - kernel.alpha); 5];
-        for p in 1..5 {
+        let mut digammas = [digamma(2.0 - kernel.alpha); SEXTIC];
+        for p in 1..SEXTIC {
             digammas[p] = digammas[p - 1] + 1.0 / (p as f64 + 1.0 - kernel.alpha);
         }
         let fast = kernel.modes() - tail;
@@ -146,7 +146,7 @@ impl ByOrder {
             let mut total = f64x8::splat(simd, 0.0);
             for k in 0..past.blocks() {
                 let [_, weight, z] = past.block(simd, k);
-                let (_, [psi, ..]) = at.moments(simd, k);
+                let (_, [psi, ..]): (_, [_; CUBIC]) = at.moments(simd, k);
                 total += weight * self.ratio(simd, k) * psi * z;
             }
             sum(total)
@@ -170,7 +170,7 @@ impl ByOrder {
     }
 
     /// ∂/∂α of [`local_moments`], L_p (ψ(p+2−α) − ln θh).
-    pub(super) fn local_moments(&self, local: &Local, h: f64, theta: f64) -> [f64; 5] {
+    pub(super) fn local_moments(&self, local: &Local, h: f64, theta: f64) -> [f64; SEXTIC] {
         let (values, ln) = (local_moments(local, h, theta), (theta * h).ln());
         std::array::from_fn(|p| values[p] * (self.digamma[p] - ln))
     }
@@ -198,8 +198,8 @@ impl ByOrder {
     }
 }
 
-/// h^{1−α} θ^{p+1−α} p!/Γ(p+2−α), p = 0…4: D^α of θ^p within a step.
-pub(super) fn local_moments(local: &Local, h: f64, theta: f64) -> [f64; 5] {
+/// h^{1−α} θ^{p+1−α} p!/Γ(p+2−α), p = 0…6: D^α of θ^p within a step.
+pub(super) fn local_moments(local: &Local, h: f64, theta: f64) -> [f64; SEXTIC] {
     let mut power = local.power(theta * h);
     local.factors.map(|factor| {
         let value = power * factor;

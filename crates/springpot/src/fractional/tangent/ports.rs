@@ -21,7 +21,7 @@ pub(crate) struct PortColumns {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Weights {
     pub(super) modes: Vec<f64>,
-    pub(super) piece: [f64; 4],
+    pub(super) piece: Vec<f64>,
 }
 
 /// What a column stands for: D^alpha x of the past at a lag, or a sum over its modes.
@@ -87,18 +87,19 @@ impl Ports {
         self.asked.get_mut().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Takes in that a step of size `h` is taken into `past`, behind which so many modes are put in front, or dropped.
-    pub(super) fn commit(&mut self, past: &History, h: f64, changed: [usize; 2]) {
+    /// Takes in that a step of size `h`, whose piece has so many coefficients (behind those of the piece before), is taken into `past`, behind which so many modes are put in front,
+    /// or dropped.
+    pub(super) fn commit(&mut self, past: &History, h: f64, coefficients: [usize; 2], changed: [usize; 2]) {
         let kernel = match self.kernel.take() {
             Some(known) if known.has_kernel_of(past) => known,
             _ => Arc::new(past.without_past()),
         };
-        self.committed = Some(PastOfStep::new(kernel.clone(), past, h, changed));
+        self.committed = Some(PastOfStep::new(kernel.clone(), past, (h, coefficients), changed));
         self.kernel = Some(kernel);
     }
 
     /// The end of the step that was committed moves by `delta_h`: modes behind it by these shares of that, and the coefficients of its piece.
-    pub(super) fn move_end(&mut self, modes: Vec<f64>, piece: [f64; 4], delta_h: &[f64]) {
+    pub(super) fn move_end(&mut self, modes: Vec<f64>, piece: Vec<f64>, delta_h: &[f64]) {
         if let Some(committed) = &mut self.committed {
             committed.moved = Some(Weights { modes, piece });
             self.moved.copy_from_slice(delta_h);
@@ -182,8 +183,8 @@ impl MemoryTangent {
     }
 
     /// δu_p of the last step, as it was taken into the past.
-    pub(crate) fn pieces(&self) -> [&[f64]; 4] {
-        [0, 1, 2, 3].map(|p| self.piece.row(p))
+    pub(crate) fn pieces(&self) -> impl Iterator<Item = &[f64]> {
+        (0..self.piece.rows()).map(|p| self.piece.row(p))
     }
 
     /// What the step that was committed last did to the past.

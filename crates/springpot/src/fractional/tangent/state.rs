@@ -7,7 +7,7 @@ use super::jump::Jump;
 impl MemoryTangent {
     /// Appends all numbers that the run has changed to `numbers`.
     pub fn save(&self, numbers: &mut Vec<f64>) {
-        numbers.extend([self.modes.rows() as f64, self.jumps.len() as f64]);
+        numbers.extend([self.modes.rows(), self.jumps.len(), self.piece.rows()].map(|count| count as f64));
         for values in [&self.origin, &self.travelled, &self.now] {
             numbers.extend_from_slice(values);
         }
@@ -26,15 +26,16 @@ impl MemoryTangent {
     /// Takes back what [`Self::save`] wrote of the derivative of the same memory by the same parameters, from the front of `numbers`; `None`
     /// where it is not that.
     pub fn load(&mut self, numbers: &mut &[f64]) -> Option<()> {
-        let &[modes, jumps] = numbers.split_off(..2)? else { return None };
-        if ![modes, jumps].iter().all(|count| *count >= 0.0 && *count <= numbers.len() as f64) {
+        let &[modes, jumps, coefficients] = numbers.split_off(..3)? else { return None };
+        if ![modes, jumps, coefficients].iter().all(|count| *count >= 0.0 && *count <= numbers.len() as f64) {
             return None;
         }
         let parameters = self.parameters;
         for values in [&mut self.origin, &mut self.travelled, &mut self.now] {
             values.copy_from_slice(numbers.split_off(..parameters)?);
         }
-        self.modes = Columns::new(parameters, modes as usize);
+        (self.modes, self.piece) =
+            (Columns::new(parameters, modes as usize), Columns::new(parameters, coefficients as usize));
         for columns in [&mut self.piece, &mut self.modes] {
             for k in 0..columns.rows() {
                 columns.row_mut(k).copy_from_slice(numbers.split_off(..parameters)?);

@@ -278,7 +278,7 @@ impl Leaf for Springpot {
                 let end = step.stroke[step.nodes.count()];
                 memory.commit_rates(&polynomial, step.places, end, step.resolution);
             }
-            Form::Strokes => memory.commit_at(&polynomial, step.places),
+            Form::Strokes | Form::Hermite => memory.commit_at(&polynomial, step.places),
         }
     }
 
@@ -286,10 +286,19 @@ impl Leaf for Springpot {
         let memory = &state.memories[0];
         let (last, polynomial) = (step.nodes.count(), step.polynomial());
         let [stroke, rate] = [step.stroke, step.rate].map(|values| [values[0], values[last]]);
+        let is_along = step.nodes == Nodes::Radau && step.course == Course::Given && step.form != Form::Strokes;
+        let (error, falls) = if is_along {
+            let (form, known) = ((step.form, step.places), [step.stroke, step.rate]);
+            let error = memory.defect_along(&polynomial, form, known, step.resolution);
+            (error, if step.form == Form::Hermite { 7.0 } else { 5.0 })
+        } else {
+            (memory.defect(&polynomial, stroke, rate, step.resolution), 4.0)
+        };
         errors.push(LocalError {
-            error: memory.defect(&polynomial, stroke, rate, step.resolution),
+            error,
             value: memory.regular_derivative(&polynomial, 1.0, stroke[1], rate[1]),
             order: self.alpha.value,
+            falls: falls - self.alpha.value,
             sharpness: if self.alpha.value == 1.0 { 0.0 } else { 1.0 },
         });
     }
@@ -381,7 +390,8 @@ impl Leaf for Springpot {
 
     fn commit_variation(&self, step: &Step, state: StateRef, told: &StepVariation, own: VariationMut) {
         let tangent_step = Self::tangent_step(step);
-        let (mut changes, count, memory) = (vec![0.0; 4 * own.count], own.count, &state.memories[0]);
+        let (count, memory) = (own.count, &state.memories[0]);
+        let mut changes = vec![0.0; tangent_step.coefficients() * count];
         let moved = told.passed.filter(|_| memory.is_fractional());
         let at_times = moved.map(|_| Self::at_times(&tangent_step, told));
         let [stroke, rate] =
@@ -414,7 +424,8 @@ impl Leaf for Springpot {
             return;
         }
         let tangent_step = Self::tangent_step(step);
-        let (mut changes, mut stored, mut dissipation) = (vec![0.0; 4 * count], vec![0.0; count], vec![0.0; count]);
+        let mut changes = vec![0.0; tangent_step.coefficients() * count];
+        let (mut stored, mut dissipation) = (vec![0.0; count], vec![0.0; count]);
         let moved = told.passed.filter(|_| memory.is_fractional());
         let at_times = moved.map(|_| Self::at_times(&tangent_step, told));
         let [strokes, rates] =
@@ -456,7 +467,7 @@ impl Leaf for Springpot {
         sum: &mut ObservationVariation,
     ) {
         let (memory, tangent, count) = (&state.memories[0], &own.memories[0], own.count);
-        let (mut changes, mut derivatives) = (vec![0.0; 4 * count], vec![0.0; count]);
+        let (mut changes, mut derivatives) = (Vec::new(), vec![0.0; count]);
         let mut kinematics = [told.stroke.to_vec(), told.rate.to_vec()];
         let mut moved = None;
         if let (When::Within(step, theta), Some(passed)) = (when, told.passed.filter(|_| memory.is_fractional())) {
@@ -470,6 +481,7 @@ impl Leaf for Springpot {
         let (tangent_step, theta, derivative, energy) = match (when, told.step) {
             (When::Within(step, theta), Some(around)) => {
                 let tangent_step = Self::tangent_step(step);
+                changes.resize(tangent_step.coefficients() * count, 0.0);
                 match around.passed.filter(|_| memory.is_fractional()) {
                     Some(_) => {
                         let [stroke, rate] = Self::at_times(&tangent_step, &around);
@@ -489,7 +501,7 @@ impl Leaf for Springpot {
             _ => {
                 tangent.now(memory, told.stroke, told.rate, &mut derivatives);
                 let start = StepStart { t: at.t, h: 0.0, stroke: at.stroke, rate: at.rate };
-                let polynomial = RatePolynomial { h: 0.0, u: [0.0; 4] };
+                let polynomial = RatePolynomial::NONE;
                 let still = TangentStep { start, nodes: Nodes::Radau, places: None, form: Form::Rates, polynomial };
                 (still, 0.0, memory.now(at.stroke, at.rate), memory.stored(at.stroke, at.rate))
             }

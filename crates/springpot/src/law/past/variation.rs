@@ -139,7 +139,7 @@ pub(in crate::law) fn recall(
     for p in 0..count {
         let own: Vec<f64> = rates.iter().map(|rates| rates[p]).collect();
         let polynomial = RatePolynomial::through_rates(width, nodes, &own);
-        polynomial.u.iter().enumerate().for_each(|(k, u)| last[k * count + p] = *u);
+        polynomial.coefficients().iter().enumerate().for_each(|(k, u)| last[k * count + p] = *u);
     }
     let mut derivative = vec![0.0; count];
     let power = |s: Complex64| match alpha {

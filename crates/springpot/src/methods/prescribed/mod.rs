@@ -6,7 +6,7 @@
 mod reversal;
 
 use crate::account::recorder::{Recorder, StepPowers};
-use crate::collocation::{RADAU_NODES, RADAU_WEIGHTS, STAGES};
+use crate::collocation::{Nodes, RADAU_NODES, RADAU_WEIGHTS, STAGES};
 use crate::elements::NoDirection;
 use crate::equations::Node;
 use crate::equations::context::Context;
@@ -14,6 +14,7 @@ use crate::equations::evaluate::Evaluation;
 use crate::equations::kinks::Seen;
 use crate::equations::{Change, Equations, Look, Scale, on_grid};
 use crate::equations::{TANGENTS, Variation};
+use crate::fractional::{Form, RatePolynomial};
 use crate::methods::stepper::{Behind, Stepper, Target, Trial};
 use crate::motion::Trajectory;
 use crate::signal::Agenda;
@@ -75,9 +76,9 @@ pub(crate) struct StepperState {
 /// Error of a step in units of its tolerance, by what it comes from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct StepError {
-    /// The worst memory: its error and order alpha.
+    /// The worst memory: its error, which falls like this power of the step.
     memory: f64,
-    alpha: f64,
+    falls: f64,
     /// Index of the worst element.
     element: Option<usize>,
     /// The energy ledger.
@@ -85,7 +86,7 @@ struct StepError {
 }
 
 impl StepError {
-    const NONE: Self = Self { memory: 0.0, alpha: 0.0, element: None, energy: 0.0 };
+    const NONE: Self = Self { memory: 0.0, falls: 4.0, element: None, energy: 0.0 };
 
     fn accepted(&self) -> bool {
         self.memory <= 1.0 && self.energy <= 1.0
@@ -93,7 +94,7 @@ impl StepError {
 
     /// By how much the next step may be longer; below 1 after a rejection.
     fn factor(&self) -> f64 {
-        let memory = 0.85 * self.memory.powf(-1.0 / (4.0 - self.alpha));
+        let memory = 0.85 * self.memory.powf(-1.0 / self.falls);
         let energy = 0.85 * self.energy.powf(-ENERGY_EXPONENT);
         let factor = memory.min(energy).clamp(0.1, 6.0);
         // A step that changes little keeps its size, and with it the tables of the exponentials.
@@ -145,7 +146,7 @@ impl Prescribed {
         }
         recorder.is_whole[1] = true;
         if let Some(element) = turned_over(cx, recorder, t, h)? {
-            return Ok(StepError { memory: 1e3, alpha: 0.0, element: Some(element), energy: 0.0 });
+            return Ok(StepError { memory: 1e3, falls: 4.0, element: Some(element), energy: 0.0 });
         }
         recorder.powers = StepPowers::default();
         for (k, evaluation) in recorder.evaluations.iter().enumerate() {
@@ -158,17 +159,21 @@ impl Prescribed {
             recorder.tell(cx, e);
             let noise = self.noise(recorder, e, t) + self.rounding(recorder, e);
             recorder.equations.bank.set_resolution(e, recorder.equations.bank.resolution(e) + noise);
+            // By a clock of its own the rates are others.
+            let has_clock = cx.system.elements[e].law.as_heated().is_some();
+            let form = if has_clock || asks_for_strokes(recorder, e) { Form::Hermite } else { Form::Rates };
+            recorder.equations.bank.set_form(e, form);
             if !recorder.equations.bank.account(e) {
                 continue;
             }
             recorder.add_actuator_power(e);
             if !recorder.equations.bank.response(e).force.iter().all(|force| force.is_finite()) {
                 // A law that finds no force asks for a shorter step.
-                return Ok(StepError { memory: 1e3, alpha: 0.0, element: Some(e), energy: 0.0 });
+                return Ok(StepError { memory: 1e3, falls: 4.0, element: Some(e), energy: 0.0 });
             }
-            let (share, alpha) = recorder.memory_error(e, usize::MAX, 0.0, self.since);
+            let (share, falls) = recorder.memory_error(e, usize::MAX, 0.0, self.since);
             if share > error.memory {
-                error = StepError { memory: share, alpha, element: Some(e), ..error };
+                error = StepError { memory: share, falls, element: Some(e), ..error };
             }
         }
         error.energy = recorder.energy_error(h, self.energy_floor);
@@ -243,6 +248,14 @@ impl Prescribed {
         };
         RunError::StepTooSmall { t: step.from, h: step.size, error: error.memory.max(error.energy), subject }
     }
+}
+
+/// Whether stroke `e` tells more than its rates do, whose rounding counts less: with h^{1−alpha}, not with h^−alpha.
+fn asks_for_strokes(recorder: &Recorder, e: usize) -> bool {
+    let bank = &recorder.equations.bank;
+    let [strokes, rates] = bank.told(e);
+    let gaps = RatePolynomial::through_rates(bank.size(), Nodes::Radau, rates).gaps(None, strokes);
+    gaps.iter().any(|gap| gap.abs() > bank.resolution(e))
 }
 
 /// How far stroke `e` at the end of the step is from the integral of its rates, m: of order h⁶ where the motion is smooth.

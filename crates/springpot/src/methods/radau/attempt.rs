@@ -145,8 +145,8 @@ impl Radau {
                 continue;
             }
             let coming = equations.coming_rate(e, |k| sizes.coming(k, self.step.origin.t + h));
-            let (share, order) = recorder.memory_error(e, errors, coming, sizes.since());
-            let memory = share.powf(1.0 / (EXPONENT * (4.0 - order)));
+            let (share, falls) = recorder.memory_error(e, errors, coming, sizes.since());
+            let memory = share.powf(1.0 / (EXPONENT * falls));
             if memory > error {
                 (error, worst) = (memory, Worst::Element(e));
             }

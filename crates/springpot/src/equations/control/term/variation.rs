@@ -228,7 +228,7 @@ impl TermVariation {
         for p in 0..count {
             let [from, to] = [0, 1].map(|end| [changes[end].0[p], changes[end].1[p]]);
             let own = term.polynomial_of_ends(h, [from, to], integrand);
-            own.u.iter().enumerate().for_each(|(k, change)| u[k * count + p] = *change);
+            own.coefficients().iter().enumerate().for_each(|(k, change)| u[k * count + p] = *change);
             if term.is_integral() {
                 self.integral[p] += own.travel();
             }

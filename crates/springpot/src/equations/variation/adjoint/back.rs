@@ -106,7 +106,7 @@ impl Backwards {
             let Some(past) = &own.past else { continue };
             let OfStep { piece, moved } = memory.take_back(past);
             let mut kept = piece.concat();
-            debug_assert_eq!(kept.len(), PIECES * count);
+            kept.resize(PIECES * count, 0.0);
             kept.extend(moved.unwrap_or_else(|| vec![0.0; count]));
             own.kept.add_transposed(&kept, &mut by, count);
         }

@@ -178,7 +178,7 @@ impl Recording {
             let told = memory.split_asked([0; 2]);
             own.past = memory.take_past();
             if let Some(past) = &own.past {
-                memory.pieces().into_iter().enumerate().for_each(|(p, row)| map.push(p, row));
+                memory.pieces().enumerate().for_each(|(p, row)| map.push(p, row));
                 memory.moved().into_iter().filter(|_| past.has_moved()).for_each(|moved| map.push(PIECES, moved));
             }
             own.kept = map.take();

@@ -1,6 +1,6 @@
 //! What is kept of a run so that one can go back through it: of each step the linear map of what parameters change.
 
-use crate::fractional::{PastOfStep, Told};
+use crate::fractional::{PastOfStep, SEXTIC, Told};
 use crate::system::sensitivity::Lost;
 
 /// Rows of a matrix of which most are 0.
@@ -127,7 +127,7 @@ pub(super) struct MemoryOfEntry {
 }
 
 /// Rows of [`MemoryOfEntry::kept`].
-pub(super) const PIECES: usize = 4;
+pub(super) const PIECES: usize = SEXTIC;
 
 /// A stretch of a run as it is gone back through.
 #[derive(Debug, Default)]

@@ -3,10 +3,11 @@
 
 use super::super::order::ByOrder;
 use super::super::{Singular, TangentStep};
+use crate::collocation::NODE_POLYNOMIAL;
 use crate::collocation::{MAX_NODES, Nodes};
 use crate::fractional::exponentials::moments;
 use crate::fractional::memory::{Memory, NEXT_TO_NODE, collocated};
-use crate::fractional::step::NODE_POLYNOMIAL;
+use crate::fractional::step::SEXTIC;
 use crate::fractional::{Form, Kind};
 use num_complex::Complex64;
 use std::f64::consts::PI;
@@ -57,7 +58,7 @@ pub(super) struct Replay {
     /// λ, ẇ and z of the tail of the derivative.
     slow: Vec<(f64, f64, C)>,
     order: f64,
-    last: (f64, [C; 4]),
+    last: (f64, [C; SEXTIC]),
     is_empty: bool,
     travelled: C,
     pub(super) now: C,
@@ -84,7 +85,7 @@ impl Replay {
             z: vec![real(0.0); kernel.modes()],
             slow: slow.lambda.iter().zip(&slow.weight).map(|(l, w)| (*l, *w, real(0.0))).collect(),
             order,
-            last: (0.0, [real(0.0); 4]),
+            last: (0.0, [real(0.0); SEXTIC]),
             is_empty: true,
             travelled: real(0.0),
             now: real(0.0),
@@ -161,8 +162,8 @@ impl Replay {
         scale * theta.powi(p as i32) * factorial / gamma(real(p as f64 + 2.0) - self.alpha)
     }
 
-    fn local(&self, u: &[C; 4], h: f64, theta: f64) -> C {
-        (0..4).map(|p| u[p] * self.moment(p, h, theta)).sum()
+    fn local(&self, u: &[C; SEXTIC], h: f64, theta: f64) -> C {
+        (0..SEXTIC).map(|p| u[p] * self.moment(p, h, theta)).sum()
     }
 
     /// Each share of the stroke that jumped, with its time.
@@ -195,7 +196,7 @@ impl Replay {
     }
 
     /// D^α x at the nodes.
-    pub(super) fn respond(&self, step: &TangentStep, u: &[C; 4], singular: Singular) -> Vec<C> {
+    pub(super) fn respond(&self, step: &TangentStep, u: &[C; SEXTIC], singular: Singular) -> Vec<C> {
         let (h, places) = (step.start.h, step.positions());
         let moments = self.singular_moments(step);
         (0..step.nodes.count())
@@ -218,10 +219,10 @@ impl Replay {
     }
 
     /// D^α x at θ, without singular parts.
-    pub(super) fn at(&self, step: &TangentStep, u: &[C; 4], theta: f64, rate: C) -> C {
+    pub(super) fn at(&self, step: &TangentStep, u: &[C; SEXTIC], theta: f64, rate: C) -> C {
         let h = step.start.h;
         let value = self.local(u, h, theta) + self.history(theta * h);
-        if step.form == Form::Strokes || step.nodes != Nodes::Radau || theta == 1.0 {
+        if step.form != Form::Rates || step.nodes != Nodes::Radau || theta == 1.0 {
             return value;
         }
         let nodes = step.places.map_or(NODE_POLYNOMIAL, |places| places.node_polynomial());
@@ -232,13 +233,13 @@ impl Replay {
     }
 
     /// What is stored and how fast it dissipates at θ.
-    pub(super) fn energy(&self, step: &TangentStep, u: &[C; 4], theta: f64, rate: C) -> [C; 2] {
+    pub(super) fn energy(&self, step: &TangentStep, u: &[C; SEXTIC], theta: f64, rate: C) -> [C; 2] {
         if theta == 0.0 && self.is_empty {
             return [real(0.0); 2];
         }
         let h = step.start.h;
         let lag = theta * h;
-        let scaled: [C; 4] = std::array::from_fn(|p| u[p] * theta.powi(p as i32));
+        let scaled: [C; SEXTIC] = std::array::from_fn(|p| u[p] * theta.powi(p as i32));
         let shortest = Nodes::Radau.positions()[0] * h;
         let front = if shortest < 0.25 * self.delta { self.faster(shortest) } else { Vec::new() };
         let mut forms = [real(0.0); 2];
@@ -260,15 +261,15 @@ impl Replay {
         let top = front.first().copied().unwrap_or(self.lambda[0]);
         let [d1, d2, d3] = self.fast_tail(top);
         let inertia = if theta == 0.0 { self.fast_tail(self.lambda[0])[1] } else { d2 };
-        let bend = (u[1] + u[2] * (2.0 * theta) + u[3] * (3.0 * theta * theta)) / h;
+        let bend = (1..SEXTIC).map(|p| u[p] * (p as f64 * theta.powi(p as i32 - 1))).sum::<C>() / h;
         [forms[0] + inertia * rate * rate * 0.5, forms[1] + rate * (d1 * rate - d2 * bend * 2.0) + d3 * bend * bend]
     }
 
     /// Takes a step that the memory has not committed yet; it ends at x = `end`, where x is known to `resolution`.
-    pub(super) fn commit(&mut self, memory: &Memory, step: &TangentStep, u: &[C; 4], end: Option<(C, f64)>) {
+    pub(super) fn commit(&mut self, memory: &Memory, step: &TangentStep, u: &[C; SEXTIC], end: Option<(C, f64)>) {
         let (h, mut u) = (step.start.h, *u);
         self.now = self.local(&u, h, 1.0) + self.history(h);
-        let travel = |u: &[C; 4]| (0..4).map(|p| u[p] * (h / (p + 1) as f64)).sum::<C>();
+        let travel = |u: &[C; SEXTIC]| (0..SEXTIC).map(|p| u[p] * (h / (p + 1) as f64)).sum::<C>();
         if let Some((stroke, resolution)) = end
             && let Some(debt) = memory.debt(&step.polynomial, stroke.re, resolution)
         {
@@ -312,8 +313,8 @@ impl Replay {
 }
 
 /// ∫ e^{−λ(τ−s)} y(s/τ) ds over a piece of width τ.
-fn taken(lambda: f64, width: f64, y: &[C; 4]) -> C {
-    let mut psi = [0.0; 4];
+fn taken(lambda: f64, width: f64, y: &[C; SEXTIC]) -> C {
+    let mut psi = [0.0; SEXTIC];
     moments(lambda * width, &mut psi);
     y.iter().zip(psi).map(|(y, psi)| y * psi).sum::<C>() * width
 }

@@ -137,7 +137,7 @@ fn goes_on_from_numbers_and_from_bytes_to_the_bit() {
 
 #[test]
 fn limits_are_those_of_springs_and_dashpots() {
-    let polynomial = RatePolynomial { h: 0.1, u: [0.3, 0.2, 0.0, 0.0] };
+    let polynomial = RatePolynomial::cubic(0.1, [0.3, 0.2, 0.0, 0.0]);
     let start = StepStart { t: 0.0, h: 0.1, stroke: 0.5, rate: 0.3 };
     let point = TangentPoint { stroke: 0.5, rate: 0.3, delta_stroke: &[2.0, 1.0], delta_rate: &[-1.0, 4.0] };
     let seeds = TangentSeeds { alpha: &[0.0; 2], origin: &[0.7, 0.0], jump: &[0.7, 0.0] };
