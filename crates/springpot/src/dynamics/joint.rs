@@ -78,6 +78,12 @@ fn stand<T: Scalar>(model: &Model, j: usize, q: &[T]) -> T {
     q[own.q].times_plus(T::from_f64(own.ratio), T::from_f64(own.offset))
 }
 
+/// Whether a degree of freedom turns nothing.
+#[inline(always)]
+pub(super) fn is_shift(degree: &Degree) -> bool {
+    matches!(degree.motion, DegreeMotion::Shift(_))
+}
+
 /// The velocity (or acceleration) of a joint of one degree.
 #[inline(always)]
 fn speed<T: Scalar>(model: &Model, j: usize, v: &[T]) -> T {

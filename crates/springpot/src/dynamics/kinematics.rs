@@ -150,6 +150,28 @@ impl<T: Scalar> Kinematics<T> {
         }
     }
 
+    /// [`Self::update_velocity`] of a robot of which joints stand still, where they stood when this was made, but where `moves` says so, velocity by
+    /// velocity.
+    pub(crate) fn update_velocity_of_moving(&mut self, model: &Model, q: &[T], v: &[T], moves: &[bool]) {
+        self.level = Level::Velocity;
+        let (n, q, v) = (model.joint_count(), &q[..model.nq()], &v[..model.nv()]);
+        self.stands.read(model, q);
+        self.joint_velocities.copy_from_slice(v);
+        for j in 0..n {
+            let (parent, moves) = (model.parent_link(j), moves[model.coordinates(j).v]);
+            if moves {
+                self.locals[j] = self.stands.placement(model, j, q);
+            }
+            let (Placement { rotation, translation }, local) = (self.placements[parent], &self.locals[j]);
+            let arm = rotation * local.translation;
+            let link = Placement { rotation: rotation * local.rotation, translation: translation + arm };
+            let Motion { angular, linear } = self.velocities[parent];
+            let carried = Motion { angular, linear: linear + angular.cross(arm) };
+            self.velocities[j + 1] = if moves { joint::velocity(model, j, &link, carried, v) } else { carried };
+            self.placements[j + 1] = link;
+        }
+    }
+
     /// [`Self::update_acceleration`], inlined.
     #[inline(always)]
     pub(super) fn set_accelerating(&mut self, model: &Model, q: &[T], v: &[T], a: &[T]) {

@@ -59,7 +59,7 @@ pub use jacobian::{
     point_jacobian_into, point_jacobian_rate, point_jacobian_rate_into,
 };
 pub use kinematics::Kinematics;
-pub(crate) use regressor::{add_gravity_effort, add_inertia_efforts};
+pub(crate) use regressor::{add_gravity_efforts, add_inertia_efforts};
 pub use rnea::{nonlinear_effects, nonlinear_effects_into, rnea, rnea_at_into, rnea_into};
 pub(crate) use rnea_derivatives::rnea_derivatives_of_moving;
 pub use rnea_derivatives::{RneaDerivatives, rnea_derivatives, rnea_derivatives_into};

@@ -18,7 +18,7 @@ pub(super) fn reference<T: Scalar>(kinematics: &Kinematics<T>) -> Vec3<T> {
 /// Velocities, accelerations (less gravity) where a = 0, columns and inertia forces of all links at the reference point.
 #[inline(always)]
 pub(super) fn motions_at_rest<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, ws: &mut Workspace<T>) {
-    motions(model, kinematics, None, ws);
+    motions(model, kinematics, None, ws, |_| true);
 }
 
 /// Velocities, accelerations (less gravity) at the accelerations `a`, columns and their rates, inertias and inertia forces of
@@ -26,8 +26,16 @@ pub(super) fn motions_at_rest<T: Scalar>(model: &Model, kinematics: &Kinematics<
 ///
 /// With v_λ, a_λ of the parent link: ψ̇ = v_λ × J (`unit_rate`), ψ̈ = a_λ × J + v_λ × ψ̇ (`unit_second_rate`), J̇ = v × J of the
 /// link itself (`unit_own_rate`), which is ψ̇ for a joint of one degree.
+///
+/// Joints stand still of which no velocity `moves`: of these there are no `unit_own_rate`.
 #[inline(always)]
-pub(super) fn motions<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, a: Option<&[T]>, ws: &mut Workspace<T>) {
+pub(super) fn motions<T: Scalar>(
+    model: &Model,
+    kinematics: &Kinematics<T>,
+    a: Option<&[T]>,
+    ws: &mut Workspace<T>,
+    moves: impl Fn(usize) -> bool,
+) {
     let (origin, v) = (reference(kinematics), kinematics.joint_velocities());
     ws.velocity[0] = Motion::ZERO;
     ws.acceleration[0] = Motion { angular: Vec3::ZERO, linear: -Vec3::from_f64(model.gravity().into()) };
@@ -40,6 +48,14 @@ pub(super) fn motions<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, a: O
         for k in model.degrees_of(j) {
             let degree = &model.degrees()[k];
             let unit = joint::unit_motion(model, degree, link, arm);
+            if !moves(degree.index) && joint::is_shift(degree) {
+                let along =
+                    |motion: Motion<T>| Motion { angular: Vec3::ZERO, linear: motion.angular.cross(unit.linear) };
+                let (rate, second) = (along(carrier), along(pushed));
+                let turned = Motion { angular: Vec3::ZERO, linear: carrier.angular.cross(rate.linear) };
+                (ws.axes.unit[k], ws.axes.rate[k], ws.axes.second_rate[k]) = (unit, rate, second + turned);
+                continue;
+            }
             let rate = carrier.cross(unit);
             velocity += unit * v[degree.index];
             acceleration += rate * v[degree.index];

@@ -54,19 +54,24 @@ pub(crate) fn add_inertia_efforts<'i>(
     }
 }
 
-/// Adds what a field of gravity that changes by `change`, m/s², world axes, asks of the joints, as [`add_inertia_efforts`] does.
-pub(crate) fn add_gravity_effort(
+/// Adds what a field of gravity that changes by each of these, m/s², world axes, asks of the joints, as [`add_inertia_efforts`] does: all that a joint
+/// carries, of mass m and first moment h, takes −(m u + e × h) · Δg along the unit motion (e, u).
+pub(crate) fn add_gravity_efforts<'g>(
     model: &Model,
     workspace: &Workspace,
-    change: [f64; 3],
-    mut add: impl FnMut(usize, f64),
+    changes: impl Iterator<Item = &'g [f64; 3]> + Clone,
+    wanted: impl Fn(usize) -> bool,
+    mut add: impl FnMut(usize, usize, f64),
 ) {
-    let upwards = Motion { angular: Vec3::ZERO, linear: -Vec3(change) };
     for joint in 0..model.joint_count() {
-        // All that the joint carries.
-        let force = workspace.composite[joint] * upwards;
         for k in model.degrees_of(joint) {
-            add(model.degrees()[k].index, workspace.axes.unit[k].dot(force));
+            let index = model.degrees()[k].index;
+            if !wanted(index) {
+                continue;
+            }
+            let (Inertia { mass, first_moment, .. }, unit) = (workspace.composite[joint], workspace.axes.unit[k]);
+            let lifted = unit.linear * mass + unit.angular.cross(first_moment);
+            changes.clone().enumerate().for_each(|(which, change)| add(index, which, -lifted.dot(Vec3(*change))));
         }
     }
 }
@@ -143,7 +148,7 @@ mod tests {
         let field = [0.4, -0.3, 0.7];
         let expected = rnea(&model.with_gravity(field), &q, &zero, &zero, &[]);
         let mut found = zero;
-        add_gravity_effort(&model, &workspace, field, |k, value| found[k] += value);
+        add_gravity_efforts(&model, &workspace, [field].iter(), |_| true, |k, _, value| found[k] += value);
         for (found, expected) in found.iter().zip(&expected) {
             assert!((found - expected).abs() < 1e-12, "gravity: {found} {expected}");
         }

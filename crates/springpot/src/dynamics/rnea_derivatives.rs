@@ -7,7 +7,7 @@ use super::kinematics::Kinematics;
 use super::moments::motions;
 use super::workspace::Workspace;
 use crate::model::Model;
-use crate::spatial::Scalar;
+use crate::spatial::{Force, Scalar};
 
 /// Derivatives of τ = RNEA(q, v, a), each nv × nv, row-major: row b belongs to τ_b, column c to the variable with index c.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,6 +53,11 @@ pub fn rnea_derivatives_into<T: Scalar>(
     workspace: &mut Workspace<T>,
     derivatives: &mut RneaDerivatives<T>,
 ) {
+    let n = model.nv();
+    let RneaDerivatives { d_q, d_v, d_a } = &mut *derivatives;
+    for matrix in [d_q, d_v, d_a] {
+        matrix[..n * n].fill(T::ZERO);
+    }
     differentiate(model, kinematics, a, workspace, derivatives, |_| true);
     let RneaDerivatives { d_q, d_v, .. } = derivatives;
     for pair in pairs {
@@ -60,8 +65,8 @@ pub fn rnea_derivatives_into<T: Scalar>(
     }
 }
 
-/// [`rnea_derivatives_into`] without pairs of a robot of which joints stand still but where `moves` says so, velocity by velocity: for others than these
-/// no more than what ∂τ/∂q of those that move has in their columns; what is not asked for is 0.
+/// [`rnea_derivatives_into`] without pairs of a robot of which joints stand still but where `moves` says so, velocity by velocity: the rows of those that
+/// move, and of the columns of others what ∂τ/∂q has there; other entries of these rows are 0, other rows stay.
 pub(crate) fn rnea_derivatives_of_moving(
     model: &Model,
     kinematics: &Kinematics,
@@ -70,9 +75,15 @@ pub(crate) fn rnea_derivatives_of_moving(
     workspace: &mut Workspace,
     derivatives: &mut RneaDerivatives,
 ) {
+    let n = model.nv();
+    let RneaDerivatives { d_q, d_v, d_a } = &mut *derivatives;
+    for row in (0..n).filter(|row| moves[*row]) {
+        [&mut *d_q, d_v, d_a].into_iter().for_each(|matrix| matrix[row * n..(row + 1) * n].fill(0.0));
+    }
     differentiate(model, kinematics, a, workspace, derivatives, |velocity| moves[velocity]);
 }
 
+/// Adds the derivatives to the rows of velocities that move.
 #[inline(always)]
 fn differentiate<T: Scalar>(
     model: &Model,
@@ -85,13 +96,10 @@ fn differentiate<T: Scalar>(
     let n = model.nv();
     let RneaDerivatives { d_q, d_v, d_a } = derivatives;
     let (d_q, d_v, d_a) = (&mut d_q[..n * n], &mut d_v[..n * n], &mut d_a[..n * n]);
-    for matrix in [&mut *d_q, &mut *d_v, &mut *d_a] {
-        matrix.fill(T::ZERO);
-    }
     if n == 0 {
         return;
     }
-    motions(model, kinematics, Some(&a[..n]), workspace);
+    motions(model, kinematics, Some(&a[..n]), workspace, &moves);
     let (ws, degrees) = (&mut *workspace, model.degrees());
     for (both, (rate, own)) in ws.axes.both_rates.iter_mut().zip(ws.axes.rate.iter().zip(&ws.axes.own_rate)) {
         *both = *rate + *own;
@@ -103,6 +111,15 @@ fn differentiate<T: Scalar>(
         let (inertia, moving, load) = (&outer[0], &outer_moving[0], ws.force[j + 1]);
         for k in model.degrees_of(j) {
             let own = ws.axes.unit[k];
+            if !moves(degrees[k].index) && joint::is_shift(&degrees[k]) {
+                let (along, second) = (own.linear, ws.axes.second_rate[k].linear);
+                let (linear, angular) = (second * inertia.mass, inertia.first_moment.cross(second));
+                let felt = Force { linear, angular: angular + along.cross(load.linear) };
+                for c in joint::carriers(model, k).filter(|c| moves(degrees[*c].index)) {
+                    d_q[degrees[c].index * n + degrees[k].index] += ws.axes.unit[c].dot(felt);
+                }
+                continue;
+            }
             let at_rest = *inertia * ws.axes.second_rate[k] + moving.times(ws.axes.rate[k].angular) * two;
             let by_position = at_rest + own.cross_force(load);
             let column = degrees[k].index;

@@ -38,6 +38,6 @@ pub(crate) use solve::Solve;
 pub(crate) use state::EquationsState;
 pub use steady::SteadyError;
 pub(crate) use variation::{
-    Backwards, Endings, Entries, Found, ROW, Recording, STAGE, Starts, StepErrors, TANGENTS, Told, Variation,
-    VariationState,
+    Backwards, Endings, Entries, Found, NodeVariation, ROW, Recording, STAGE, Starts, StepErrors, TANGENTS, Told,
+    Variation, VariationState,
 };

@@ -20,12 +20,13 @@ use super::resistance::add_tangents;
 use super::solve::Solve;
 use crate::collocation::STAGES;
 use crate::dynamics::{
-    Kinematics, RneaDerivatives, Workspace, add_gravity_effort, add_inertia_efforts, rnea_derivatives_of_moving,
+    Kinematics, RneaDerivatives, Workspace, add_gravity_efforts, add_inertia_efforts, rnea_derivatives_of_moving,
 };
 use crate::elements::{MemoryRange, Reading};
 use crate::law::past::Begun;
 use crate::law::variation::{LawVariation, ObservationVariation, PointVariation, StepVariation};
 use crate::law::{Network, Response, Start};
+use crate::linalg::columns::add;
 use crate::model::{FrictionLaw, Model};
 use crate::observe::Quantity;
 use crate::system::sensitivity::{Seed, Sensitivity, SensitivityError};
@@ -58,6 +59,8 @@ pub(crate) struct Variation {
     /// What moves geometry, for good: velocity of the extended robot, parameter, by how much.
     placed: Vec<(usize, usize, f64)>,
     inertias: Inertias,
+    /// Seeds that push joints by themselves: parameter, and which of its seeds.
+    pushes: Vec<(usize, usize)>,
     /// At the start of the step, at its nodes, and at a row.
     pub(crate) nodes: [NodeVariation; ROW + 1],
     sizes: Sizes,
@@ -229,6 +232,10 @@ impl Variation {
             _ => None,
         });
         let placed = placed.collect();
+        let is_push = |seed: &Seed| matches!(seed, Seed::Drive { .. } | Seed::Damping { .. } | Seed::Friction { .. });
+        let seeds =
+            by.parameters.iter().enumerate().flat_map(|(p, own)| own.seeds.iter().enumerate().map(move |k| (p, k)));
+        let pushes = seeds.filter(|(_, (_, seed))| is_push(seed)).map(|(p, (which, _))| (p, which)).collect();
         let elements = extended.elements.iter().map(|element| element.inputs.len()).enumerate().map(element).collect();
         let moves = (0..model.nv()).map(|k| own_v.contains(&k)).collect();
         Ok(Self {
@@ -238,6 +245,7 @@ impl Variation {
             elements,
             placed,
             inertias: Inertias::of(by),
+            pushes,
             nodes: std::array::from_fn(|_| node()),
             sizes: Sizes::new(by, model.nv(), extended.elements.len()),
             singular: Singular::new(extended.elements.len(), model.nv(), count),
@@ -260,6 +268,19 @@ impl Variation {
     /// Number of velocities of the extended robot.
     pub(crate) fn nv(&self) -> usize {
         self.system.model.nv()
+    }
+
+    /// Of every velocity of the run, which of the extended robot it is.
+    pub(crate) fn own_v(&self) -> &[usize] {
+        &self.own_v
+    }
+
+    /// Accelerations at the nodes of the step do not change, as far as is known.
+    pub(crate) fn rest_stages(&mut self) {
+        let (count, Self { nodes, own_v, .. }) = (self.count(), self);
+        for stage in &mut nodes[1..=STAGES] {
+            own_v.iter().for_each(|k| stage.a[k * count..(k + 1) * count].fill(0.0));
+        }
     }
 
     /// Whether what changes of a quantity is what changes of the motion alone.
@@ -417,7 +438,7 @@ impl Variation {
         }
         node.t = at.t;
         node.q_now.copy_from_slice(q);
-        node.kinematics.update_velocity(model, q, &node.v_now);
+        node.kinematics.update_velocity_of_moving(model, q, &node.v_now, moves);
         let n = model.nv();
         let measured = node.gradients.iter_mut().zip(&mut node.hessians).zip(&mut node.readings);
         for (element, (([gradient, bend], kept), told)) in system.elements.iter().zip(measured) {
@@ -438,6 +459,9 @@ impl Variation {
     /// What changes of the inputs at node `i`, at time t, which follow from time alone or are held.
     pub(super) fn look_at_inputs(&mut self, i: usize, t: f64) {
         let Self { by, system, elements, saltation: Saltation { held, .. }, .. } = self;
+        if elements.iter().all(|element| element.inputs[0].is_empty()) {
+            return;
+        }
         let count = by.parameters.len();
         for element in elements.iter_mut() {
             for blocks in &mut element.inputs {
@@ -479,7 +503,7 @@ impl Variation {
     /// Looks at node `i`, where the elements pull with `force`, and sees the slopes there, and what changes where the motion stays.
     pub(crate) fn see(&mut self, equations: &Equations, i: usize, at: Node, force: &[f64]) {
         self.look(i, at);
-        let Self { by, system, own_v, moves, nodes, room, saltation, inertias, one_size, .. } = self;
+        let Self { by, system, own_v, moves, nodes, room, saltation, inertias, pushes, one_size, .. } = self;
         let workspace = &mut room.workspace;
         let Saltation { held, .. } = saltation;
         let (model, node, count) = (&system.model, &mut nodes[i], by.parameters.len());
@@ -498,10 +522,10 @@ impl Variation {
             let row = own_v[velocity] * count;
             node.explicit[row..row + count].iter_mut().zip(by).for_each(|(sum, by)| *sum -= by);
         }
-        for (p, parameter) in by.parameters.iter().enumerate() {
+        for &(p, which) in pushes.iter() {
             let mut add = |k: usize, value: f64| node.explicit[k * count + p] += value;
-            for seed in &parameter.seeds {
-                match seed {
+            {
+                match &by.parameters[p].seeds[which] {
                     Seed::Drive { velocity, by } if held.drive(*velocity).is_none() => {
                         add(own_v[*velocity], -by.value(at.t));
                     }
@@ -535,9 +559,8 @@ impl Variation {
             add_inertia_efforts(model, &node.kinematics, workspace, *joint, inertias, |k| moves[k], add);
         }
         rotors.iter().for_each(|(p, k, rotor)| explicit[k * count + p] += rotor * node.a_now[*k]);
-        for (p, change) in fields {
-            add_gravity_effort(model, workspace, *change, |k, value| explicit[k * count + *p] += value);
-        }
+        let add = |k: usize, which: usize, value: f64| explicit[k * count + fields[which].0] += value;
+        add_gravity_efforts(model, workspace, fields.iter().map(|(_, change)| change), |k| moves[k], add);
     }
 
     /// Follows the motion at the nodes, as they have it, with all that is told of it.
@@ -584,10 +607,8 @@ impl Variation {
         for &k in own_v.iter() {
             let (q, v) = (&node.q[k * count..][..count], &node.v[k * count..][..count]);
             let (g, y) = (gradient[k], bend[k]);
-            for ((stroke, rate), (q, v)) in stroke.iter_mut().zip(&mut *rate).zip(q.iter().zip(v)) {
-                *stroke += g * q;
-                *rate += y * q + g * v;
-            }
+            add(stroke, [g], [q]);
+            add(rate, [y, g], [q, v]);
         }
         for &(k, p, by) in placed.iter() {
             stroke[p] += gradient[k] * by;
@@ -607,10 +628,7 @@ impl Variation {
             let at = row * n + k;
             let (by_q, by_v, by_a) = (slopes.d_q[at], slopes.d_v[at], slopes.d_a[at]);
             let own = block(&node.q, k);
-            let (q, v, a) = (&node.q[own.clone()], &node.v[own.clone()], &node.a[own]);
-            for ((sum, q), (v, a)) in sum.iter_mut().zip(q).zip(v.iter().zip(a)) {
-                *sum += by_q * q + by_v * v + by_a * a;
-            }
+            add(sum, [by_q, by_v, by_a], [&node.q[own.clone()], &node.v[own.clone()], &node.a[own]]);
         }
         self.placed.iter().for_each(|(k, p, by)| sum[*p] += slopes.d_q[row * n + k] * by);
         if let Some(control) = self.control.as_ref().filter(|_| !self.is_held(row)) {
@@ -626,7 +644,7 @@ impl Variation {
         for (e, [gradient, _]) in self.nodes[i].gradients.iter().enumerate() {
             let g = gradient[row];
             if g != 0.0 {
-                sum.iter_mut().zip(force(e)).for_each(|(sum, force)| *sum += g * force);
+                add(sum, [g], [force(e)]);
             }
         }
     }
@@ -739,8 +757,7 @@ impl Variation {
         for m in 0..STAGES {
             let (by_stroke, by_rate) = (response.d_stroke[i - 1][m], response.d_rate[i - 1][m]);
             let own = (m + 1) * count..(m + 2) * count;
-            let told = element.stroke[own.clone()].iter().zip(&element.rate[own]);
-            force.iter_mut().zip(told).for_each(|(force, (x, rate))| *force += by_stroke * x + by_rate * rate);
+            add(force, [by_stroke, by_rate], [&element.stroke[own.clone()], &element.rate[own]]);
         }
     }
 

@@ -1,6 +1,10 @@
 //! Dense linear systems by Gaussian elimination: P A = L U with partial pivoting (G. H. Golub, C. F. Van Loan, Matrix
 //! Computations, 4th ed. 2013, 3.4).
 
+use super::columns::{Block, LANES, put_block, take_block};
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, Simd, dispatch, f64x8};
+
 /// An n × n matrix factorised by rows with partial pivoting.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Lu {
@@ -8,6 +12,8 @@ pub(crate) struct Lu {
     entries: Vec<f64>,
     order: Vec<usize>,
     scratch: Vec<f64>,
+    /// Room for blocks of columns.
+    rows: [Vec<Block>; 2],
 }
 
 impl Lu {
@@ -80,32 +86,36 @@ impl Lu {
 
     /// Solves for `count` right-hand sides at once, which stand side by side: row k of `x` has component k of all of them.
     pub(crate) fn solve_rows(&mut self, x: &mut [f64], count: usize) {
-        let n = self.n;
-        self.scratch.resize(n * count, 0.0);
-        for (slot, &source) in self.scratch.chunks_exact_mut(count.max(1)).zip(&self.order) {
-            slot.copy_from_slice(&x[source * count..][..count]);
+        let Self { n, entries, order, rows: [given, found], .. } = self;
+        for rows in [&mut *given, &mut *found] {
+            rows.resize(*n, [0.0; LANES]);
         }
-        let y = &mut self.scratch;
-        for k in 0..n {
-            let (above, rest) = y.split_at_mut(k * count);
-            let own = &mut rest[..count];
-            for (j, row) in above.chunks_exact(count.max(1)).enumerate() {
-                let factor = self.entries[k * n + j];
-                own.iter_mut().zip(row).for_each(|(own, row)| *own -= factor * row);
-            }
+        for first in (0..count).step_by(LANES) {
+            take_block(x, count, first, given);
+            dispatch!(Level::new(), simd => solve_block(simd, (entries, order), given, found));
+            put_block(found, x, count, first);
         }
-        for k in (0..n).rev() {
-            let (rest, below) = y.split_at_mut((k + 1) * count);
-            let own = &mut rest[k * count..];
-            for (j, row) in below.chunks_exact(count.max(1)).enumerate() {
-                let factor = self.entries[k * n + k + 1 + j];
-                own.iter_mut().zip(row).for_each(|(own, row)| *own -= factor * row);
-            }
-            let pivot = self.entries[k * n + k];
-            own.iter_mut().for_each(|own| *own /= pivot);
+    }
+}
+
+/// Solves for one block of right-hand sides.
+#[inline(always)]
+fn solve_block<S: Simd>(simd: S, (entries, order): (&[f64], &[usize]), given: &[Block], found: &mut [Block]) {
+    let n = found.len();
+    for k in 0..n {
+        let mut sum = f64x8::load_array_ref(simd, &given[order[k]]);
+        let factors = &entries[k * n..(k + 1) * n];
+        for j in 0..k {
+            sum -= f64x8::load_array_ref(simd, &found[j]) * factors[j];
         }
-        x.copy_from_slice(y);
-        self.scratch.truncate(n);
+        sum.store_array(&mut found[k]);
+    }
+    for k in (0..n).rev() {
+        let (mut sum, factors) = (f64x8::load_array_ref(simd, &found[k]), &entries[k * n..(k + 1) * n]);
+        for j in k + 1..n {
+            sum -= f64x8::load_array_ref(simd, &found[j]) * factors[j];
+        }
+        (sum / f64x8::splat(simd, factors[k])).store_array(&mut found[k]);
     }
 }
 
@@ -123,14 +133,20 @@ mod tests {
         assert!(lu.factor(n, |m| (0..n * n).for_each(|k| m[k] = entry(k / n, k % n))));
         lu.solve(&mut y);
         assert!(x.iter().zip(&y).all(|(x, y)| (x - y).abs() < 1e-14), "{y:?}");
-        let mut rows: Vec<f64> = (0..2 * n).map(|k| ((k * k) as f64).sin()).collect();
-        let each = [0, 1].map(|side| {
-            let mut one: Vec<f64> = (0..n).map(|k| rows[2 * k + side]).collect();
-            lu.solve(&mut one);
-            one
-        });
-        lu.solve_rows(&mut rows, 2);
-        assert!((0..2 * n).all(|k| (rows[k] - each[k % 2][k / 2]).abs() < 1e-14), "{rows:?}");
+        // More columns than a block has, and not whole ones.
+        for count in [2, 11] {
+            let mut rows: Vec<f64> = (0..count * n).map(|k| ((k * k) as f64).sin()).collect();
+            let each: Vec<Vec<f64>> = (0..count)
+                .map(|side| {
+                    let mut one: Vec<f64> = (0..n).map(|k| rows[count * k + side]).collect();
+                    lu.solve(&mut one);
+                    one
+                })
+                .collect();
+            lu.solve_rows(&mut rows, count);
+            let is_same = |k: usize| (rows[k] - each[k % count][k / count]).abs() < 1e-14;
+            assert!((0..count * n).all(is_same), "{rows:?}");
+        }
         assert!(!lu.factor(2, |m| m.copy_from_slice(&[1.0, 2.0, 2.0, 4.0])));
         assert!(!lu.factor(1, |m| m[0] = f64::NAN));
     }

@@ -1,5 +1,6 @@
 //! Small dense linear algebra. Matrices are row-major; the joint-space mass matrix has its own factors in `dynamics`.
 
+pub(crate) mod columns;
 mod complex;
 mod eigen;
 mod gauss;

@@ -138,7 +138,7 @@ pub fn pair_hessian_into<T: Scalar>(
     pair_hessian_of_moving(model, kinematics, [from, to], |_| true, workspace, hessian);
 }
 
-/// [`pair_hessian_into`] in the rows and columns of the velocities that move; what is not asked for is 0.
+/// [`pair_hessian_into`] in the rows of the velocities that move; other rows stay.
 #[inline(always)]
 pub(crate) fn pair_hessian_of_moving<T: Scalar>(
     model: &Model,
@@ -151,11 +151,15 @@ pub(crate) fn pair_hessian_of_moving<T: Scalar>(
     let (n, degrees) = (model.nv(), model.degrees());
     assert_eq!(hessian.len(), n * n, "the Hessian is nv x nv");
     let wanted = |a: usize, b: usize| moves(degrees[a].index) || moves(degrees[b].index);
-    hessian.fill(T::ZERO);
+    for row in (0..n).filter(|row| moves(*row)) {
+        hessian[row * n..(row + 1) * n].fill(T::ZERO);
+    }
     let line = Line::new(model, kinematics, from, to);
     line.fill_columns(model, kinematics, &mut workspace.columns);
     line.second_derivatives(model, kinematics, &workspace.columns, wanted, |a, b, entry| {
-        hessian[degrees[a].index * n + degrees[b].index] += entry;
+        if moves(degrees[a].index) {
+            hessian[degrees[a].index * n + degrees[b].index] += entry;
+        }
     });
 }
 

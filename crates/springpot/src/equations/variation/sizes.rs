@@ -5,6 +5,7 @@ use crate::collocation::STAGES;
 use crate::equations::assembly::Equations;
 use crate::law::variation::VariationError;
 use crate::system::sensitivity::Sensitivity;
+use fearless_simd::{Level, dispatch};
 use serde::{Deserialize, Serialize};
 
 /// How far ahead what begins to change is measured, as a share of the run: in shorter steps rounding would be all that is seen of it.
@@ -80,32 +81,21 @@ impl Variation {
     pub(crate) fn step_error(&self, rows: &[usize], StepErrors { errors, moved, rtol }: StepErrors) -> f64 {
         let count = self.count();
         let (last, [sizes_q, sizes_v]) = (&self.nodes[STAGES], &self.sizes.so_far.motion);
-        let sized = |k: usize| {
-            let block = k * count..(k + 1) * count;
-            let of = |sizes: &'_ [f64], last: &'_ [f64]| -> Vec<f64> {
-                let (sizes, last) = (sizes[block.clone()].iter(), last[block.clone()].iter());
-                sizes.zip(last).map(|(size, last)| size.max(last.abs())).collect()
-            };
-            [of(sizes_q, &last.q), of(sizes_v, &last.v)]
-        };
+        let sides = [(sizes_q, &last.q), (sizes_v, &last.v)];
+        let block = |k: usize| k * count..(k + 1) * count;
         let mut beside = [vec![0.0f64; count], vec![0.0f64; count]];
-        for &k in &self.own_v {
-            for (beside, own) in beside.iter_mut().zip(sized(k)) {
-                beside.iter_mut().zip(own).for_each(|(most, own)| *most = most.max(BESIDE * own));
+        for (beside, (sizes, last)) in beside.iter_mut().zip(sides) {
+            for block in self.own_v.iter().map(|&k| block(k)) {
+                dispatch!(Level::new(), _ => grow(beside, BESIDE, [&sizes[block.clone()], &last[block]]));
             }
         }
-        let mut sums = vec![0.0; count];
+        let (mut sums, mut jumps, none) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
         for (r, (&k, [speed, travel])) in rows.iter().zip(moved).enumerate() {
-            let own = sized(k);
-            for (((own, beside), errors), (moved, of_place)) in
-                own.iter().zip(&beside).zip([errors[1], errors[0]]).zip([(travel, true), (speed, false)])
-            {
-                let errors = &errors[r * count..(r + 1) * count];
-                for (p, (sum, error)) in sums.iter_mut().zip(errors).enumerate() {
-                    let jump = if of_place { self.jump_travel(k, p) } else { 0.0 };
-                    let allowed = rtol * own[p].max(beside[p]).max(moved * self.sizes.expected[p]).max(jump);
-                    *sum += if *error == 0.0 { 0.0 } else { (error / allowed).powi(2) };
-                }
+            jumps.iter_mut().enumerate().for_each(|(p, jump)| *jump = self.jump_travel(k, p));
+            let measured = [(errors[1], travel, &jumps), (errors[0], speed, &none)];
+            for (((sizes, last), beside), (errors, moved, jumps)) in sides.iter().zip(&beside).zip(measured) {
+                let own = [&sizes[block(k)], &last[block(k)], beside, &self.sizes.expected, &errors[block(r)], jumps];
+                dispatch!(Level::new(), _ => add_shares(&mut sums, (rtol, *moved), own));
             }
         }
         let known = sums.iter().enumerate().filter(|(p, _)| self.knows(*p)).map(|(_, sum)| sum);
@@ -151,9 +141,31 @@ impl Variation {
         let [q, v] = &mut sizes.so_far.motion;
         for (sizes, now) in [(q, &start.q), (v, &start.v)] {
             for block in own_v.iter().map(|k| k * count..(k + 1) * count) {
-                let now = now[block.clone()].iter();
-                sizes[block].iter_mut().zip(now).for_each(|(size, now)| *size = size.max(now.abs()));
+                dispatch!(Level::new(), _ => grow(&mut sizes[block.clone()], 1.0, [&now[block.clone()], &now[block]]));
             }
         }
+    }
+}
+
+/// Makes sizes at least `share` of the larger one of two, column by column.
+#[inline(always)]
+fn grow(sizes: &mut [f64], share: f64, [first, second]: [&[f64]; 2]) {
+    let count = sizes.len();
+    let (first, second) = (&first[..count], &second[..count]);
+    for p in 0..count {
+        sizes[p] = sizes[p].max(share * first[p].abs().max(second[p].abs()));
+    }
+}
+
+/// Adds the squares of errors in units of what they may be: of sizes so far and at the end of the step, of what stands beside, what is expected of what
+/// `moved`, the errors, and how far a jump goes.
+#[inline(always)]
+fn add_shares(sums: &mut [f64], (rtol, moved): (f64, f64), of: [&[f64]; 6]) {
+    let count = sums.len();
+    let [sizes, last, beside, expected, errors, jumps] = of.map(|own| &own[..count]);
+    for p in 0..count {
+        let size = sizes[p].max(last[p].abs()).max(beside[p]);
+        let share = errors[p] / (rtol * size.max(moved * expected[p]).max(jumps[p]));
+        sums[p] += if errors[p] == 0.0 { 0.0 } else { share * share };
     }
 }

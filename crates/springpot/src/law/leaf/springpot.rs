@@ -193,19 +193,24 @@ impl Springpot {
         }
     }
 
-    /// D^alpha x at node `i` of a step, the share of a singular start as the course takes it.
-    fn derivative_at(memory: &Memory, step: &Step, i: usize) -> f64 {
-        let start = step.start();
+    /// D^alpha x at the nodes of a step, the share of a singular start as the course takes it.
+    fn derivatives(memory: &Memory, step: &Step) -> [f64; MAX_NODES] {
+        let (start, mut derivatives) = (step.start(), [0.0; MAX_NODES]);
         let affine = memory.respond_at(&start, step.nodes, step.places, step.form);
-        let own = |j: usize| {
-            affine.stroke[i][j] * (step.stroke[j + 1] - step.stroke[0]) + affine.rate[i][j] * step.rate[j + 1]
-        };
-        let regular = affine.history[i] + (0..step.nodes.count()).map(own).sum::<f64>();
-        if !memory.is_singular() || step.course == Course::Given {
-            return regular;
+        for (i, derivative) in derivatives.iter_mut().enumerate().take(step.nodes.count()) {
+            let own = |j: usize| {
+                affine.stroke[i][j] * (step.stroke[j + 1] - step.stroke[0]) + affine.rate[i][j] * step.rate[j + 1]
+            };
+            *derivative = affine.history[i] + (0..step.nodes.count()).map(own).sum::<f64>();
         }
-        let value = memory.singular_part(step.t + step.positions()[i] * step.h);
-        regular - value + memory.singular_moments(&start, step.nodes, step.places)[i]
+        if memory.is_singular() && step.course != Course::Given {
+            let moments = memory.singular_moments(&start, step.nodes, step.places);
+            for (i, derivative) in derivatives.iter_mut().enumerate().take(step.nodes.count()) {
+                let value = memory.singular_part(step.t + step.positions()[i] * step.h);
+                *derivative = *derivative - value + moments[i];
+            }
+        }
+        derivatives
     }
 }
 
@@ -379,12 +384,12 @@ impl Leaf for Springpot {
         if let Some(passed) = told.passed.filter(|_| memory.is_fractional()) {
             Self::add_moved(memory, step, passed, own.count, &mut derivatives);
         }
+        let values = Self::derivatives(memory, step);
         for (i, forces) in forces.chunks_exact_mut(own.count).enumerate() {
             let inputs = step.point(i + 1).inputs;
             add(forces, self.coefficient.at(inputs).value, &derivatives[i * own.count..(i + 1) * own.count]);
             let followed = self.coefficient.input.and_then(|input| told.input_at(i + 1, input, inputs.len()));
-            let derivative = Self::derivative_at(memory, step, i);
-            self.coefficient.add_change(inputs, followed.map(|[value, _]| value), &own, derivative, forces);
+            self.coefficient.add_change(inputs, followed.map(|[value, _]| value), &own, values[i], forces);
         }
     }
 

@@ -6,10 +6,11 @@
 
 use super::estimate::raw;
 use super::step::{EstimateScratch, RadauStep};
-use crate::collocation::radau::{A, A_SQUARED, GAMMA};
+use crate::collocation::radau::{A, A_SQUARED, ESTIMATE, GAMMA};
 use crate::collocation::{RADAU_NODES, STAGES, TABLEAU, integrals};
-use crate::equations::{Equations, Found, ROW, StepErrors, TANGENTS, Variation};
+use crate::equations::{Equations, Found, NodeVariation, ROW, StepErrors, TANGENTS, Variation};
 use crate::linalg::Lu;
+use crate::linalg::columns::{add, put};
 use crate::model::{FreeTurn, Turned, add_turned};
 
 /// A joint that turns freely over a step: how its turns at the stages answer to its velocities there.
@@ -110,8 +111,8 @@ impl RadauStep {
         free: &[usize],
         (h, again): (f64, bool),
     ) -> bool {
-        variation.nodes[1..=STAGES].iter_mut().for_each(|stage| stage.a.fill(0.0));
-        self.place_variation(variation, free, h);
+        variation.rest_stages();
+        self.place_variation(variation, free, (h, false));
         variation.follow(equations);
         if !again {
             variation.ask(equations);
@@ -124,7 +125,7 @@ impl RadauStep {
             if !self.solve_variation(equations, variation, (free, h), &mut found) {
                 return false;
             }
-            self.place_variation(variation, free, h);
+            self.place_variation(variation, free, (h, true));
             variation.follow(equations);
             // Where all is linear it is found at once.
             if self.turned.is_empty() || found.is_all() {
@@ -133,33 +134,14 @@ impl RadauStep {
         }
     }
 
-    /// What changes at the stages under what changes of the accelerations there.
-    fn place_variation(&mut self, variation: &mut Variation, free: &[usize], h: f64) {
+    /// What changes at the stages under what changes of the accelerations there, or under none.
+    fn place_variation(&mut self, variation: &mut Variation, free: &[usize], (h, moves): (f64, bool)) {
         let count = variation.count();
-        (1..=STAGES).for_each(|i| variation.take_motion(i));
+        if free.len() < variation.own_v().len() {
+            (1..=STAGES).for_each(|i| variation.take_motion(i));
+        }
         let [start, stages @ .., _] = &mut variation.nodes;
-        for (i, stage) in stages.iter_mut().enumerate() {
-            let moved = RADAU_NODES[i] * h;
-            for &k in free {
-                let block = k * count..(k + 1) * count;
-                let rates = &start.v[block.clone()];
-                stage.q[block].iter_mut().zip(rates).for_each(|(q, rate)| *q += moved * rate);
-            }
-        }
-        let [first, second, third] = stages;
-        for &k in free {
-            let block = k * count..(k + 1) * count;
-            let a = [&first.a, &second.a, &third.a].map(|a| &a[block.clone()]);
-            let moved = [(&mut first.v, &mut first.q), (&mut second.v, &mut second.q), (&mut third.v, &mut third.q)];
-            for ((v, q), (once, twice)) in moved.into_iter().zip(A.iter().zip(&A_SQUARED)) {
-                let changes = a[0].iter().zip(a[1]).zip(a[2]);
-                let own = v[block.clone()].iter_mut().zip(&mut q[block.clone()]);
-                for ((v, q), ((a, b), c)) in own.zip(changes) {
-                    *v += h * (once[0] * a + once[1] * b + once[2] * c);
-                    *q += h * h * (twice[0] * a + twice[1] * b + twice[2] * c);
-                }
-            }
-        }
+        place(start, stages, free, (h, moves, count));
         for turned in &mut self.turned {
             turned.place(variation, h);
         }
@@ -176,9 +158,8 @@ impl RadauStep {
         }
         let [start, stages @ .., _] = &variation.nodes;
         let EstimateScratch { changes: [speeds, places, errors], stiffness, .. } = &mut self.scratch;
-        speeds.clear();
-        places.clear();
-        for &k in &free {
+        [&mut *speeds, places].into_iter().for_each(|blocks| blocks.resize(free.len() * count, 0.0));
+        for (r, &k) in free.iter().enumerate() {
             let block = k * count..(k + 1) * count;
             let at = [start, &stages[0], &stages[1], &stages[2]];
             let mut rates = at.map(|node| &node.v[block.clone()]);
@@ -186,13 +167,16 @@ impl RadauStep {
                 let own = (k - first) * count..(k - first + 1) * count;
                 rates[1..].iter_mut().zip(of_turn).for_each(|(rates, turn)| *rates = &turn[own.clone()]);
             }
-            push_raw(h, rates, places);
-            match variation.is_singular() {
-                false => push_raw(h, at.map(|node| &node.a[block.clone()]), speeds),
-                true => speeds.extend((0..count).map(|p| {
+            let weights = [GAMMA, ESTIMATE[0], ESTIMATE[1], ESTIMATE[2]].map(|weight| h * weight);
+            let own = r * count..(r + 1) * count;
+            put(&mut places[own.clone()], weights, rates);
+            if variation.is_singular() {
+                for (p, speed) in speeds[own].iter_mut().enumerate() {
                     let [first, nodes @ ..] = [0, 1, 2, 3].map(|i| variation.regular(i, k, p));
-                    raw(h, first, nodes)
-                })),
+                    *speed = raw(h, first, nodes);
+                }
+            } else {
+                put(&mut speeds[own], weights, at.map(|node| &node.a[block.clone()]));
             }
         }
         // M r_v − h γ_0 K r_q.
@@ -201,9 +185,7 @@ impl RadauStep {
         for (r, error) in errors.chunks_exact_mut(count).enumerate() {
             for (c, (speed, place)) in speeds.chunks_exact(count).zip(places.chunks_exact(count)).enumerate() {
                 let (mass, stiffness) = (mass[own[r] * n + own[c]], step * stiffness[r * free.len() + c]);
-                for (error, (speed, place)) in error.iter_mut().zip(speed.iter().zip(place)) {
-                    *error += mass * speed - stiffness * place;
-                }
+                add(error, [mass, -stiffness], [speed, place]);
             }
         }
         self.filter.solve_rows(errors, count);
@@ -216,15 +198,18 @@ impl RadauStep {
     pub(super) fn vary_within(&self, variation: &mut Variation, theta: f64, h: f64) {
         let count = variation.count();
         variation.take_start(ROW);
-        for k in 0..variation.nv() {
-            for p in 0..count {
+        // Accelerations, and their integrals, as sums over the nodes.
+        let of_node = |i: usize| integrals(TABLEAU.rates.map(|line| line[i]), theta);
+        let shares = [0, 1, 2, 3].map(of_node);
+        let sum =
+            |which: usize, nodes: [f64; 4]| -> f64 { shares.iter().zip(nodes).map(|(own, a)| own[which] * a).sum() };
+        for k in variation.own_v().to_vec() {
+            for (p, block) in (k * count..(k + 1) * count).enumerate() {
                 let nodes = [0, 1, 2, 3].map(|i| variation.regular(i, k, p));
-                let (block, row) = (k * count + p, &mut variation.nodes[ROW]);
-                let cubic = TABLEAU.rates.map(|line| line.iter().zip(nodes).map(|(l, a)| l * a).sum::<f64>());
-                let [value, once, twice] = integrals(cubic, theta);
-                row.a[block] = value;
-                row.q[block] += h * (theta * row.v[block] + h * twice);
-                row.v[block] += h * once;
+                let row = &mut variation.nodes[ROW];
+                row.a[block] = sum(0, nodes);
+                row.q[block] += h * (theta * row.v[block] + h * sum(2, nodes));
+                row.v[block] += h * sum(1, nodes);
             }
         }
         let mut xi = vec![0.0; self.model.nv()];
@@ -304,44 +289,43 @@ impl RadauStep {
     ) {
         let (n, own) = (variation.nv(), free.len());
         let size = STAGES * own;
-        // What changes of an element's force by the accelerations of a stage.
-        let mut force = vec![0.0; own];
-        for i in 0..STAGES {
-            let node = &variation.nodes[i + 1];
-            for j in 0..STAGES {
-                let (damping, stiffness) = (h * A[i][j], h * h * A_SQUARED[i][j]);
-                for (r, &row) in free.iter().enumerate() {
-                    let line = &mut matrix[(i * own + r) * size + j * own..][..own];
-                    for (entry, &column) in line.iter_mut().zip(free) {
-                        let at = row * n + column;
-                        *entry = damping * node.slopes.d_v[at] + stiffness * node.slopes.d_q[at];
-                        if i == j {
-                            *entry += node.slopes.d_a[at];
-                        }
+        for (i, lines) in matrix.chunks_exact_mut(own * size).enumerate() {
+            let slopes = &variation.nodes[i + 1].slopes;
+            for (line, &row) in lines.chunks_exact_mut(size).zip(free) {
+                let [by_q, by_v, by_a] = [&slopes.d_q, &slopes.d_v, &slopes.d_a].map(|by| &by[row * n..(row + 1) * n]);
+                for (c, &column) in free.iter().enumerate() {
+                    for j in 0..STAGES {
+                        line[j * own + c] = h * A[i][j] * by_v[column] + h * h * A_SQUARED[i][j] * by_q[column];
                     }
+                    line[i * own + c] += by_a[column];
                 }
             }
-            let felt = |row: usize| !variation.relieves(i + 1, row);
-            for e in 0..variation.elements.len() {
-                let response = variation.response(equations, e);
-                let [on, _] = &node.gradients[e];
-                for j in 0..STAGES {
-                    force.fill(0.0);
-                    for m in 0..STAGES {
-                        let [gradient, bend] = &variation.nodes[m + 1].gradients[e];
-                        let (stroke, rate) = (response.d_stroke[i][m], response.d_rate[i][m]);
+        }
+        // What changes of an element's force by the accelerations of all stages.
+        let mut force = vec![0.0; size];
+        for e in 0..variation.elements.len() {
+            let response = variation.response(equations, e);
+            let slopes = [1, 2, 3].map(|m| &variation.nodes[m].gradients[e]);
+            for (i, lines) in matrix.chunks_exact_mut(own * size).enumerate() {
+                force.fill(0.0);
+                for (m, [g, y]) in slopes.iter().enumerate() {
+                    let (stroke, rate) = (response.d_stroke[i][m], response.d_rate[i][m]);
+                    for (j, force) in force.chunks_exact_mut(own).enumerate() {
                         let (twice, once) = (h * h * A_SQUARED[m][j], h * A[m][j]);
-                        let [by_gradient, by_bend] = [twice * stroke + once * rate, twice * rate];
+                        let (by_g, by_y) = (twice * stroke + once * rate, twice * rate);
                         for (force, &column) in force.iter_mut().zip(free) {
-                            *force += by_gradient * gradient[column] + by_bend * bend[column];
+                            *force += by_g * g[column] + by_y * y[column];
                         }
                     }
-                    for (r, &row) in free.iter().enumerate().filter(|(_, row)| on[**row] != 0.0 && felt(**row)) {
-                        let line = &mut matrix[(i * own + r) * size + j * own..][..own];
-                        line.iter_mut().zip(&force).for_each(|(entry, force)| *entry += on[row] * force);
-                    }
+                }
+                let [on, _] = slopes[i];
+                let felt = |row: usize| on[row] != 0.0 && !variation.relieves(i + 1, row);
+                for (line, &row) in lines.chunks_exact_mut(size).zip(free).filter(|(_, row)| felt(**row)) {
+                    line.iter_mut().zip(&force).for_each(|(entry, force)| *entry += on[row] * force);
                 }
             }
+        }
+        for i in 0..STAGES {
             self.answer_to_state(equations, variation, (i, free, h), matrix);
         }
     }
@@ -383,12 +367,31 @@ impl RadauStep {
     }
 }
 
-/// Appends [`raw`] of blocks of a quantity at the start and at the nodes.
-fn push_raw(h: f64, [start, first, second, third]: [&[f64]; 4], to: &mut Vec<f64>) {
-    let nodes = first.iter().zip(second).zip(third);
-    to.extend(
-        start.iter().zip(nodes).map(|(start, ((first, second), third))| raw(h, *start, [*first, *second, *third])),
-    );
+/// What changes of q and v at the stages, block by block.
+fn place(
+    start: &NodeVariation,
+    stages: &mut [NodeVariation; STAGES],
+    free: &[usize],
+    (h, moves, count): (f64, bool, usize),
+) {
+    let [first, second, third] = stages;
+    for &k in free {
+        let block = k * count..(k + 1) * count;
+        let (q, rates) = (&start.q[block.clone()], &start.v[block.clone()]);
+        let a = [&first.a[block.clone()], &second.a[block.clone()], &third.a[block.clone()]];
+        let moved = [(&mut first.v, &mut first.q), (&mut second.v, &mut second.q), (&mut third.v, &mut third.q)];
+        for (((to_v, to_q), c), (once, twice)) in moved.into_iter().zip(RADAU_NODES).zip(A.iter().zip(&A_SQUARED)) {
+            let (to_v, to_q, along) = (&mut to_v[block.clone()], &mut to_q[block.clone()], c * h);
+            if moves {
+                let [once, twice] = [once.map(|by| h * by), twice.map(|by| h * h * by)];
+                put(to_v, [1.0, once[0], once[1], once[2]], [rates, a[0], a[1], a[2]]);
+                put(to_q, [1.0, along, twice[0], twice[1], twice[2]], [q, rates, a[0], a[1], a[2]]);
+            } else {
+                to_v.copy_from_slice(rates);
+                put(to_q, [1.0, along], [q, rates]);
+            }
+        }
+    }
 }
 
 /// What changes of ξ' at the stages, of the joint that turns freely and has velocity `k` of the extended robot, and the first of its velocities.

@@ -52,10 +52,10 @@ impl Endings {
             }
         }
         for (reached, own) in memories.iter_mut().zip(&entry.memories) {
-            own.kept.each(|_, column| join(reached, &by[column]));
+            own.kept.entries(|_, column| join(reached, &by[column]));
         }
         state.clear();
-        entry.state.each(|row, column| {
+        entry.state.entries(|row, column| {
             if state.len() <= row {
                 state.resize(row + 1, vec![false; *parameters]);
             }

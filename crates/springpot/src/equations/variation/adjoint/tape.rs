@@ -1,54 +1,71 @@
 //! What is kept of a run so that one can go back through it: of each step the linear map of what parameters change.
 
 use crate::fractional::{PastOfStep, SEXTIC, Told};
+use crate::linalg::columns::add;
 use crate::system::sensitivity::Lost;
 
-/// Rows of a matrix of which most are 0.
+/// Rows of a matrix, each from its first entry to its last; rows of zeros are not kept.
 #[derive(Debug, Default)]
 pub(super) struct Map {
-    /// Which row each is, and where its entries end.
-    rows: Vec<(u32, u32)>,
-    columns: Vec<u32>,
+    rows: Vec<RowOfMap>,
     values: Vec<f64>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct RowOfMap {
+    row: u32,
+    /// The column of its first entry.
+    first: u32,
+    /// Where its entries end among all.
+    end: u32,
 }
 
 impl Map {
     /// Takes in row `row`.
     pub(super) fn push(&mut self, row: usize, values: &[f64]) {
-        let before = self.values.len();
-        for (column, value) in values.iter().enumerate().filter(|(_, value)| **value != 0.0) {
-            self.columns.push(column as u32);
-            self.values.push(*value);
-        }
-        if self.values.len() > before {
-            self.rows.push((row as u32, self.values.len() as u32));
+        let is_some = |value: &f64| *value != 0.0;
+        if let (Some(first), Some(last)) = (values.iter().position(is_some), values.iter().rposition(is_some)) {
+            self.values.extend_from_slice(&values[first..=last]);
+            self.rows.push(RowOfMap { row: row as u32, first: first as u32, end: self.values.len() as u32 });
         }
     }
 
-    /// Hands over row and column of all that is not 0.
-    pub(super) fn each(&self, mut take: impl FnMut(usize, usize)) {
+    /// Hands over each row: which, the column of its first entry, its entries.
+    fn each(&self, mut take: impl FnMut(usize, usize, &[f64])) {
         let mut from = 0;
-        for (row, end) in &self.rows {
-            self.columns[from..*end as usize].iter().for_each(|column| take(*row as usize, *column as usize));
+        for RowOfMap { row, first, end } in &self.rows {
+            take(*row as usize, *first as usize, &self.values[from..*end as usize]);
             from = *end as usize;
         }
     }
 
+    /// Hands over row and column of all that is not 0.
+    pub(super) fn entries(&self, mut take: impl FnMut(usize, usize)) {
+        self.each(|row, first, values| {
+            let entries = (first..).zip(values).filter(|(_, value)| **value != 0.0);
+            entries.for_each(|(column, _)| take(row, column));
+        });
+    }
+
     /// to += transposed·by, in blocks of `count`: what counts for nothing adds nothing, whatever the map has there.
     pub(super) fn add_transposed(&self, by: &[f64], to: &mut [f64], count: usize) {
-        let mut from = 0;
-        for (row, end) in &self.rows {
-            let own = &by[*row as usize * count..][..count];
-            let (entries, end) = (from..*end as usize, *end as usize);
-            from = end;
-            if own.iter().all(|by| *by == 0.0) {
-                continue;
+        self.each(|row, first, values| {
+            let own = &by[row * count..][..count];
+            let sums = &mut to[first * count..][..values.len() * count];
+            match own {
+                [by] if *by == 0.0 => {}
+                [by] if by.is_finite() => {
+                    add(sums, [*by], [values]);
+                }
+                _ => {
+                    let entries = sums.chunks_exact_mut(count.max(1)).zip(values).filter(|(_, value)| **value != 0.0);
+                    for (sums, value) in entries {
+                        let counted = sums.iter_mut().zip(own).filter(|(_, by)| **by != 0.0);
+                        counted.for_each(|(sum, by)| *sum += value * by);
+                    }
+                }
             }
-            for (column, value) in self.columns[entries.clone()].iter().zip(&self.values[entries]) {
-                let sums = &mut to[*column as usize * count..][..count];
-                sums.iter_mut().zip(own).filter(|(_, by)| **by != 0.0).for_each(|(sum, by)| *sum += value * by);
-            }
-        }
+        });
     }
 
     /// Of whatever rests on a row, however little, columns are unknown where the map is.
@@ -56,34 +73,32 @@ impl Map {
         if self.values.iter().all(|value| !value.is_nan()) {
             return;
         }
-        let mut from = 0;
-        for (row, end) in &self.rows {
-            let (own, entries) = (&rests[*row as usize * count..][..count], from..*end as usize);
-            from = *end as usize;
-            let unknown = self.columns[entries.clone()].iter().zip(&self.values[entries]);
-            for (column, _) in unknown.filter(|(_, value)| value.is_nan()) {
-                let sums = to[*column as usize * count..][..count].iter_mut().zip(own);
+        self.each(|row, first, values| {
+            let own = &rests[row * count..][..count];
+            for (column, _) in (first..).zip(values).filter(|(_, value)| value.is_nan()) {
+                let sums = to[column * count..][..count].iter_mut().zip(own);
                 sums.filter(|(_, rests)| **rests).for_each(|(sum, _)| *sum = f64::NAN);
             }
-        }
+        });
     }
 
     /// Notes which columns it has entries in.
     pub(super) fn mark(&self, used: &mut [bool]) {
-        self.columns.iter().for_each(|column| used[*column as usize] = true);
+        self.each(|_, first, values| {
+            used[first..].iter_mut().zip(values).for_each(|(used, value)| *used |= *value != 0.0);
+        });
     }
 
     /// What was taken in, with no room beside it; this one begins anew.
     pub(super) fn take(&mut self) -> Self {
-        let taken = Self { rows: self.rows.to_vec(), columns: self.columns.to_vec(), values: self.values.to_vec() };
+        let taken = Self { rows: self.rows.to_vec(), values: self.values.to_vec() };
         self.rows.clear();
-        self.columns.clear();
         self.values.clear();
         taken
     }
 
     fn bytes(&self) -> usize {
-        size_of_val(&self.rows[..]) + size_of_val(&self.columns[..]) + size_of_val(&self.values[..])
+        size_of_val(&self.rows[..]) + size_of_val(&self.values[..])
     }
 }
 
