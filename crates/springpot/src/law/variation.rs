@@ -6,6 +6,7 @@ use super::step::{InputValue, Point, Step};
 use crate::collocation::MAX_NODES;
 use crate::dual::Dual;
 use crate::fractional::MemoryTangent;
+use crate::linalg::columns;
 use serde::{Deserialize, Serialize};
 
 /// What parameters change of what a law is told of a step: blocks of `count` derivatives.
@@ -375,5 +376,6 @@ impl<'a> PointVariation<'a> {
 
 /// Adds factor·block to a block.
 pub(crate) fn add(to: &mut [f64], factor: f64, block: &[f64]) {
-    to.iter_mut().zip(block).for_each(|(to, x)| *to += factor * x);
+    let count = to.len().min(block.len());
+    columns::add(&mut to[..count], [factor], [block]);
 }

@@ -84,7 +84,8 @@ impl<'a, T: Scalar> Line<'a, T> {
             for hi in joint::path_to(model, site.link(), self.common) {
                 for lo in joint::inwards(model, hi + 1, model.last_degree(self.common)).filter(|lo| wanted(*lo, hi)) {
                     let both = stretched(lo, hi);
-                    let turned = u.dot(turn(lo).cross(columns[hi]));
+                    let shifts = joint::is_shift(&degrees[lo]);
+                    let turned = if shifts { T::ZERO } else { u.dot(turn(lo).cross(columns[hi])) };
                     visit(hi, lo, both + turned);
                     if lo == hi {
                         continue;

@@ -3,6 +3,7 @@
 use super::super::history::Lag;
 use super::super::lanes::{Block, LANES, load};
 use super::super::step::{CUBIC, SEXTIC};
+use crate::linalg::columns;
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch, f64x8};
 use serde::{Deserialize, Serialize};
@@ -145,5 +146,6 @@ pub(super) fn rows<const Q: usize>(mut matrix: &mut [f64]) -> [&mut [f64]; Q] {
 
 /// out += factor·values.
 pub(super) fn add(out: &mut [f64], factor: f64, values: &[f64]) {
-    out.iter_mut().zip(values).for_each(|(out, value)| *out += factor * value);
+    let count = out.len().min(values.len());
+    columns::add(&mut out[..count], [factor], [values]);
 }

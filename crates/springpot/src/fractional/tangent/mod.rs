@@ -144,19 +144,21 @@ impl TangentStep<'_> {
             return;
         }
         out.fill(0.0);
-        let count = self.nodes.count();
-        for k in 0..=count {
+        let data = if self.form == Form::Rates { delta_rate } else { delta_stroke };
+        for (k, data) in data.chunks_exact(parameters.max(1)).enumerate().take(self.nodes.count() + 1) {
             let mut unit = [0.0; MAX_NODES + 1];
             unit[k] = 1.0;
-            let (values, h) = (&unit[..=count], self.start.h);
-            let (column, data) = match (self.form, self.places) {
-                (Form::Strokes, None) => (RatePolynomial::through_strokes(h, self.nodes, values), delta_stroke),
-                (Form::Strokes, Some(places)) => (RatePolynomial::through_strokes_at(h, places, values), delta_stroke),
-                (_, None) => (RatePolynomial::through_rates(h, self.nodes, values), delta_rate),
-                (_, Some(places)) => (RatePolynomial::through_rates_at(h, places, values), delta_rate),
+            let (values, h) = (&unit[..=self.nodes.count()], self.start.h);
+            let column = match (self.form, self.places) {
+                (Form::Strokes, None) => RatePolynomial::through_strokes(h, self.nodes, values),
+                (Form::Strokes, Some(places)) => RatePolynomial::through_strokes_at(h, places, values),
+                (_, None) => RatePolynomial::through_rates(h, self.nodes, values),
+                (_, Some(places)) => RatePolynomial::through_rates_at(h, places, values),
             };
-            for p in 0..CUBIC {
-                add(&mut out[p * parameters..][..parameters], column.u[p], &data[k * parameters..][..parameters]);
+            for (out, factor) in out.chunks_exact_mut(parameters.max(1)).zip(column.u) {
+                if factor != 0.0 {
+                    add(out, factor, data);
+                }
             }
         }
     }

@@ -200,17 +200,22 @@ impl RadauStep {
         variation.take_start(ROW);
         // Accelerations, and their integrals, as sums over the nodes.
         let of_node = |i: usize| integrals(TABLEAU.rates.map(|line| line[i]), theta);
-        let shares = [0, 1, 2, 3].map(of_node);
-        let sum =
-            |which: usize, nodes: [f64; 4]| -> f64 { shares.iter().zip(nodes).map(|(own, a)| own[which] * a).sum() };
+        let [a, b, c, d] = [0, 1, 2, 3].map(of_node);
+        let [value, once, twice] = [0, 1, 2].map(|which| [a, b, c, d].map(|of_node| of_node[which]));
         for k in variation.own_v().to_vec() {
-            for (p, block) in (k * count..(k + 1) * count).enumerate() {
-                let nodes = [0, 1, 2, 3].map(|i| variation.regular(i, k, p));
-                let row = &mut variation.nodes[ROW];
-                row.a[block] = sum(0, nodes);
-                row.q[block] += h * (theta * row.v[block] + h * sum(2, nodes));
-                row.v[block] += h * sum(1, nodes);
-            }
+            let own = k * count..(k + 1) * count;
+            let singular: Option<[Vec<f64>; 4]> = variation
+                .is_singular()
+                .then(|| [0, 1, 2, 3].map(|i| (0..count).map(|p| variation.regular(i, k, p)).collect()));
+            let [nodes @ .., row] = &mut variation.nodes;
+            let at = match &singular {
+                Some(at) => at.each_ref().map(Vec::as_slice),
+                None => nodes.each_ref().map(|node| &node.a[own.clone()]),
+            };
+            put(&mut row.a[own.clone()], value, at);
+            add(&mut row.q[own.clone()], [h * theta], [&row.v[own.clone()]]);
+            add(&mut row.q[own.clone()], twice.map(|share| h * h * share), at);
+            add(&mut row.v[own], once.map(|share| h * share), at);
         }
         let mut xi = vec![0.0; self.model.nv()];
         for TurnedStages { free, first, rate_changes, .. } in &self.turned {

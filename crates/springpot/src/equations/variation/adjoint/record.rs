@@ -131,6 +131,7 @@ impl Recording {
             return refuse("branches of control that are left but not yet crossed");
         }
         let (state, mut starts) = (&mut self.map, Starts::default());
+        starts.columns.reserve_exact(self.columns.units);
         let Columns { parameters, units, .. } = self.columns;
         let mut take = |block: &mut [f64]| {
             if block.iter().any(|change| *change != 0.0) {
