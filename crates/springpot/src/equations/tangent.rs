@@ -54,6 +54,7 @@ pub(crate) fn couplings<'a>(
 
 impl Coupling<'_> {
     /// Adds on ⊗ (x·by of δq + y·by of δv) over the velocities `free` to a matrix whose line r begins at `line(r)`.
+    #[inline(always)]
     pub(crate) fn add(&self, [x, y]: [f64; 2], free: &[usize], matrix: &mut [f64], line: impl Fn(usize) -> usize) {
         match &self.path {
             Path::Joint(k) => {

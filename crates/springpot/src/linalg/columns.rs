@@ -70,9 +70,7 @@ pub(super) fn take_block(x: &[f64], count: usize, first: usize, rows: &mut [Bloc
             Some(whole) => *block = *whole,
             None => {
                 let rest = &row[first..];
-                for l in 0..rest.len() {
-                    block[l] = rest[l];
-                }
+                block[..rest.len()].copy_from_slice(rest);
             }
         }
     }
@@ -86,9 +84,7 @@ pub(super) fn put_block(rows: &[Block], x: &mut [f64], count: usize, first: usiz
             Some(whole) => *whole = *block,
             None => {
                 let rest = &mut row[first..];
-                for l in 0..rest.len() {
-                    rest[l] = block[l];
-                }
+                rest.copy_from_slice(&block[..rest.len()]);
             }
         }
     }
