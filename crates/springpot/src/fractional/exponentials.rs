@@ -1,7 +1,6 @@
 //! e^{−X} and its moments ψ_p(X) = ∫₀¹ e^{−X(1−θ)} θ^p dθ: what an exponential with the rate λ makes of a step, X = λh.
 
-use super::lanes::LANES;
-use super::step::CUBIC;
+use super::step::{CUBIC, SEXTIC};
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f64x8};
 
@@ -31,6 +30,20 @@ const SERIES: [f64; 16] = {
     let mut k = 1;
     while k < 16 {
         values[k] = values[k - 1] / (k + 4) as f64;
+        k += 1;
+    }
+    values
+};
+
+/// Where moments from above and from below meet that are those of a sextic.
+const MEETING: f64 = 3.0;
+
+/// 6!/(k + 7)!, k = 0 … 23.
+const SERIES_OF_SIX: [f64; 24] = {
+    let mut values = [1.0 / 7.0; 24];
+    let mut k = 1;
+    while k < 24 {
+        values[k] = values[k - 1] / (k + 7) as f64;
         k += 1;
     }
     values
@@ -79,22 +92,39 @@ pub(super) fn cubic_moments<S: Simd>(x: f64x8<S>, decay: f64x8<S>) -> [f64x8<S>;
     psi
 }
 
-/// As [`cubic_moments`], ψ_0 … ψ_{N−1}.
+/// As [`cubic_moments`], ψ_0 … ψ_6: upwards from x = 3 on, below it downwards from the series of ψ_6, so that errors grow by five at most.
+#[inline(always)]
+pub(super) fn sextic_moments<S: Simd>(x: f64x8<S>, decay: f64x8<S>) -> [f64x8<S>; SEXTIC] {
+    let (one, is_small) = (f64x8::splat(x.simd, 1.0), x.simd_lt(MEETING));
+    let mut up = [one; SEXTIC];
+    if !is_small.all_true() {
+        let inverse = one / x.max(MEETING);
+        up[0] = (one - decay) * inverse;
+        for p in 1..SEXTIC {
+            up[p] = (one - up[p - 1] * p as f64) * inverse;
+        }
+        if is_small.all_false() {
+            return up;
+        }
+    }
+    let x = x.min(MEETING);
+    let mut psi = [polynomial(&SERIES_OF_SIX, -x); SEXTIC];
+    for p in (1..SEXTIC).rev() {
+        psi[p - 1] = (one - x * psi[p]) * (1.0 / p as f64);
+    }
+    for p in 0..SEXTIC {
+        psi[p] = is_small.select(psi[p], up[p]);
+    }
+    psi
+}
+
+/// ψ_0 … ψ_{N−1} of a cubic or a sextic.
 #[inline(always)]
 pub(super) fn lane_moments<S: Simd, const N: usize>(x: f64x8<S>, decay: f64x8<S>) -> [f64x8<S>; N] {
     let mut psi = [f64x8::splat(x.simd, 0.0); N];
-    if N == CUBIC {
-        psi.copy_from_slice(&cubic_moments(x, decay));
-        return psi;
-    }
-    let mut lanes = [[0.0; LANES]; N];
-    for (l, x) in x.to_array().into_iter().enumerate() {
-        let mut own = [0.0; N];
-        moments(x, &mut own);
-        lanes.iter_mut().zip(own).for_each(|(lanes, own)| lanes[l] = own);
-    }
-    for (psi, lanes) in psi.iter_mut().zip(&lanes) {
-        *psi = f64x8::load_array_ref(x.simd, lanes);
+    match N {
+        CUBIC => psi.copy_from_slice(&cubic_moments(x, decay)),
+        _ => psi.copy_from_slice(&sextic_moments(x, decay)),
     }
     psi
 }
@@ -159,10 +189,11 @@ mod tests {
         dispatch!(level, simd => decay(load(simd, x)).to_array())
     }
 
-    fn moments_of(level: Level, x: &Block) -> [Block; CUBIC] {
+    fn moments_of<const N: usize>(level: Level, x: &Block) -> [Block; N] {
         dispatch!(level, simd => {
             let x = load(simd, x);
-            cubic_moments(x, decay(x)).map(|psi| psi.to_array())
+            let psi: [_; N] = lane_moments(x, decay(x));
+            psi.map(|psi| psi.to_array())
         })
     }
 
@@ -213,13 +244,18 @@ mod tests {
 
     #[test]
     fn moments_of_a_block_are_those_of_its_numbers() {
+        compare_moments::<CUBIC>();
+        compare_moments::<SEXTIC>();
+    }
+
+    fn compare_moments<const N: usize>() {
         for shift in 0..ARGUMENTS.len() {
             let x: Block = std::array::from_fn(|l| ARGUMENTS[(l + shift) % ARGUMENTS.len()]);
-            let block = moments_of(Level::new(), &x);
+            let block: [Block; N] = moments_of(Level::new(), &x);
             for l in 0..LANES {
-                let mut psi = [0.0; CUBIC];
+                let mut psi = [0.0; N];
                 moments(x[l], &mut psi);
-                for p in 0..CUBIC {
+                for p in 0..N {
                     assert!(
                         (block[p][l] / psi[p] - 1.0).abs() < 3e-14,
                         "psi_{p}({}): {} {}",
@@ -237,7 +273,11 @@ mod tests {
         for k in 0..20_000 {
             let x: Block = std::array::from_fn(|l| 1e-7 * 1.0007f64.powi((k + 4321 * l as i32) % 33_000));
             assert_eq!(decay_of(Level::baseline(), &x), decay_of(Level::new(), &x), "{x:?}");
-            assert_eq!(moments_of(Level::baseline(), &x), moments_of(Level::new(), &x), "{x:?}");
+            let levels = [Level::baseline(), Level::new()];
+            let [narrow, wide] = levels.map(|level| moments_of::<CUBIC>(level, &x));
+            assert_eq!(narrow, wide, "{x:?}");
+            let [narrow, wide] = levels.map(|level| moments_of::<SEXTIC>(level, &x));
+            assert_eq!(narrow, wide, "{x:?}");
         }
     }
 }

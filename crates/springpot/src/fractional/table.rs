@@ -1,8 +1,8 @@
 //! What the exponentials make of one lag, kept for as long as it is asked for.
 
-use super::exponentials::{cubic_moments, decay, moments};
+use super::exponentials::{decay, lane_moments, moments};
 use super::lanes::{Block, LANES, load, sum};
-use super::step::CUBIC;
+use super::step::{CUBIC, SEXTIC};
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch, f64x8};
 
@@ -29,7 +29,7 @@ impl Table {
         self.weighted.resize(blocks, [0.0; LANES]);
         self.psi.resize(count * blocks, [0.0; LANES]);
         dispatch!(Level::new(), simd => self.fill_exponentials(simd, lambda, weight));
-        if count != CUBIC {
+        if count != CUBIC && count != SEXTIC {
             self.fill_moments(count, lambda);
         }
         // What fills up the last block stays 0.
@@ -40,22 +40,30 @@ impl Table {
         }
     }
 
-    /// The moments too, where they are those of a cubic.
+    /// The moments too, where they are those of a cubic or a sextic.
     #[inline(always)]
     fn fill_exponentials<S: Simd>(&mut self, simd: S, lambda: &[Block], weight: &[Block]) {
-        let is_cubic = self.psi.len() == CUBIC * lambda.len();
+        match self.psi.len() / lambda.len().max(1) {
+            CUBIC => self.fill_with::<_, CUBIC>(simd, lambda, weight),
+            SEXTIC => self.fill_with::<_, SEXTIC>(simd, lambda, weight),
+            _ => self.fill_with::<_, 0>(simd, lambda, weight),
+        }
+    }
+
+    #[inline(always)]
+    fn fill_with<S: Simd, const N: usize>(&mut self, simd: S, lambda: &[Block], weight: &[Block]) {
         let modes = lambda.iter().zip(weight).zip(&mut self.decay).zip(&mut self.weighted);
-        let mut psi = self.psi.as_chunks_mut::<CUBIC>().0.iter_mut();
+        let mut psi = self.psi.chunks_exact_mut(N.max(1));
         for (((lambda, weight), decayed), weighted) in modes {
             let x = load(simd, lambda) * self.lag;
             let decay = decay(x);
             decay.store_array(decayed);
             (load(simd, weight) * decay).store_array(weighted);
-            if is_cubic && let Some(psi) = psi.next() {
-                let moments = cubic_moments(x, decay);
-                for p in 0..CUBIC {
-                    moments[p].store_array(&mut psi[p]);
-                }
+            if N > 0
+                && let Some(psi) = psi.next()
+            {
+                let moments: [_; N] = lane_moments(x, decay);
+                moments.iter().zip(psi).for_each(|(moment, psi)| moment.store_array(psi));
             }
         }
     }
