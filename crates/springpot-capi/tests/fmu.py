@@ -8,6 +8,7 @@ import ctypes
 import os
 import pathlib
 import subprocess
+import tempfile
 
 import fmpy
 import fmpy.fmi2
@@ -47,6 +48,14 @@ def rows_of(folder, name, *options):
     with open(folder / "results" / "results.csv", newline="") as file:
         table = list(csv.DictReader(file))
     return {column: np.array([float(row[column] or "nan") for row in table]) for column in table[0]}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def unpacked():
+    """All that is unpacked goes into one folder, which does not stay: each has a library of 45 MB in it."""
+    with tempfile.TemporaryDirectory() as folder, pytest.MonkeyPatch.context() as patch:
+        patch.setattr(tempfile, "tempdir", folder)
+        yield
 
 
 @pytest.fixture(scope="module")
