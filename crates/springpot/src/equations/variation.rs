@@ -524,31 +524,29 @@ impl Variation {
         }
         for &(p, which) in pushes.iter() {
             let mut add = |k: usize, value: f64| node.explicit[k * count + p] += value;
-            {
-                match &by.parameters[p].seeds[which] {
-                    Seed::Drive { velocity, by } if held.drive(*velocity).is_none() => {
-                        add(own_v[*velocity], -by.value(at.t));
-                    }
-                    Seed::Damping { joint, by } => {
-                        let (k, ratio, speed) = felt(model, *joint, &node.v_now);
-                        add(k, by * ratio * speed);
-                    }
-                    Seed::Friction { joint, by } => {
-                        let (k, ratio, speed) = felt(model, *joint, &node.v_now);
-                        match model.friction_laws()[*joint] {
-                            FrictionLaw::Smooth { speed: width } => add(k, by * ratio * (speed / width).tanh()),
-                            FrictionLaw::Sticking => {
-                                let own = own_v.iter().position(|own| *own == k);
-                                let direction = |own: usize| match one_size {
-                                    Some(one_size) => one_size.sliding(i, own, at.v[own]),
-                                    None => equations.sliding(own, at.v[own]),
-                                };
-                                add(k, by * ratio.abs() * own.map_or(0.0, direction));
-                            }
+            match &by.parameters[p].seeds[which] {
+                Seed::Drive { velocity, by } if held.drive(*velocity).is_none() => {
+                    add(own_v[*velocity], -by.value(at.t));
+                }
+                Seed::Damping { joint, by } => {
+                    let (k, ratio, speed) = felt(model, *joint, &node.v_now);
+                    add(k, by * ratio * speed);
+                }
+                Seed::Friction { joint, by } => {
+                    let (k, ratio, speed) = felt(model, *joint, &node.v_now);
+                    match model.friction_laws()[*joint] {
+                        FrictionLaw::Smooth { speed: width } => add(k, by * ratio * (speed / width).tanh()),
+                        FrictionLaw::Sticking => {
+                            let own = own_v.iter().position(|own| *own == k);
+                            let direction = |own: usize| match one_size {
+                                Some(one_size) => one_size.sliding(i, own, at.v[own]),
+                                None => equations.sliding(own, at.v[own]),
+                            };
+                            add(k, by * ratio.abs() * own.map_or(0.0, direction));
                         }
                     }
-                    _ => {}
                 }
+                _ => {}
             }
         }
         let Inertias { links, rotors, fields } = inertias;

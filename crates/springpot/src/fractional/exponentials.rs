@@ -77,7 +77,7 @@ pub(super) fn decay<S: Simd>(x: f64x8<S>) -> f64x8<S> {
 ///
 /// Upwards by ψ_p = (1 − pψ_{p−1})/x from x = 1 on; below, downwards from the series of ψ_3.
 #[inline(always)]
-pub(super) fn cubic_moments<S: Simd>(x: f64x8<S>, decay: f64x8<S>) -> [f64x8<S>; CUBIC] {
+fn cubic_moments<S: Simd>(x: f64x8<S>, decay: f64x8<S>) -> [f64x8<S>; CUBIC] {
     let is_small = x.simd_lt(1.0);
     if is_small.all_false() {
         return moments_upwards(x, decay);
@@ -94,7 +94,7 @@ pub(super) fn cubic_moments<S: Simd>(x: f64x8<S>, decay: f64x8<S>) -> [f64x8<S>;
 
 /// As [`cubic_moments`], ψ_0 … ψ_6: upwards from x = 3 on, below it downwards from the series of ψ_6, so that errors grow by five at most.
 #[inline(always)]
-pub(super) fn sextic_moments<S: Simd>(x: f64x8<S>, decay: f64x8<S>) -> [f64x8<S>; SEXTIC] {
+fn sextic_moments<S: Simd>(x: f64x8<S>, decay: f64x8<S>) -> [f64x8<S>; SEXTIC] {
     let (one, is_small) = (f64x8::splat(x.simd, 1.0), x.simd_lt(MEETING));
     let mut up = [one; SEXTIC];
     if !is_small.all_true() {

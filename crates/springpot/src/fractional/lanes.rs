@@ -3,14 +3,9 @@
 //! Products and sums are never joined into one rounding, and the numbers of a block are added in one order, so that every machine
 //! finds the same bits.
 
+pub(super) use crate::linalg::columns::{Block, LANES};
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f64x8};
-
-/// Numbers side by side.
-pub(super) const LANES: usize = 8;
-
-/// As many numbers.
-pub(super) type Block = [f64; LANES];
 
 /// Numbers in whole blocks, the rest 0.
 pub(super) fn blocks(values: &[f64]) -> Vec<Block> {

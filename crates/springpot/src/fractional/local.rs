@@ -2,8 +2,9 @@
 
 use super::step::{RatePolynomial, SEXTIC, local_factors};
 use crate::collocation::inner;
-use crate::collocation::{MAX_NODES, Nodes, Places, RADAU_NODES, TABLEAU};
+use crate::collocation::{Gaps, MAX_NODES, Nodes, Places, RADAU_NODES, TABLEAU};
 use serde::{Deserialize, Serialize};
+use std::sync::OnceLock;
 
 /// What the order says of every step, and h^{1−alpha} of the last one.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -16,8 +17,8 @@ pub(super) struct Local {
     rates: [[f64; 4]; 3],
     /// Those of the strokes x_j − x_0.
     strokes: [[f64; 3]; 3],
-    /// Both of the polynomial that has strokes and rates.
-    both: Both,
+    /// Both of the polynomial that has strokes and rates, once it is asked for.
+    both: OnceLock<Both>,
     /// Those of the strokes at the nodes inside a series.
     inner: [[f64; 4]; 4],
     /// A lag and its power 1−alpha.
@@ -29,7 +30,7 @@ const SAMPLES: u8 = 20;
 
 /// D^alpha x at the three nodes of a step of h = 1 whose polynomial has strokes and rates.
 #[derive(Debug, Clone, Copy)]
-struct Both {
+pub(super) struct Both {
     /// Factors of x' at 0 and at the nodes, for each node.
     rates: [[f64; 4]; 3],
     /// Those of the strokes x_j − x_0.
@@ -44,7 +45,8 @@ impl Both {
             let terms = polynomial.iter().zip(factors).map(|(u, factor)| u * factor);
             theta.powf(1.0 - alpha) * terms.rev().fold(0.0, |sum, term| sum * theta + term)
         };
-        let through = |known: [&[f64]; 2]| RatePolynomial::through_strokes_and_rates(1.0, places, known).u;
+        let gaps = Gaps::at(places);
+        let through = |known: [&[f64]; 2]| RatePolynomial::through_both(1.0, (places, &gaps), known).u;
         let unit = |k: usize| std::array::from_fn::<f64, 4, _>(|j| f64::from(u8::from(j == k)));
         let by_rate = [0, 1, 2, 3].map(|k| through([&[0.0; 4], &unit(k)]));
         let by_stroke = [1, 2, 3].map(|k| through([&unit(k), &[0.0; 4]]));
@@ -77,8 +79,7 @@ impl From<f64> for Local {
             let term = |p: usize, j: usize| factors[p] * (p + 1) as f64 * inner::TABLEAU_OF_FOUR.values[p + 1][j + 1];
             std::array::from_fn(|j| scale * (0..4).rev().fold(0.0, |sum, p| sum * c + term(p, j)))
         });
-        let both = Both::of(&factors, alpha, None);
-        Self { alpha, factors, rates, strokes, both, inner, power: [1.0; 2] }
+        Self { alpha, factors, rates, strokes, both: OnceLock::new(), inner, power: [1.0; 2] }
     }
 }
 
@@ -105,9 +106,10 @@ impl Local {
         self.power(theta * step.h) * sum
     }
 
-    /// Where three nodes are at `places`, else those of Radau.
-    fn both(&self, places: Option<&Places>) -> Both {
-        places.map_or(self.both, |places| Both::of(&self.factors, self.alpha, Some(places)))
+    /// Of steps whose three nodes are at `places`, else those of Radau.
+    pub(super) fn both(&self, places: Option<&Places>) -> Both {
+        let of = || Both::of(&self.factors, self.alpha, places);
+        if places.is_some() { of() } else { *self.both.get_or_init(of) }
     }
 
     /// The most that x at the first node tells of D^alpha x in a step whose polynomial has strokes and rates, of which the highest coefficient is
@@ -117,13 +119,8 @@ impl Local {
     }
 
     /// Factors of x' at 0 and at the nodes, and of the strokes x_j − x_0, for node i of a step whose polynomial has both.
-    pub(super) fn rows_of_both(
-        &self,
-        h: f64,
-        i: usize,
-        places: Option<&Places>,
-    ) -> ([f64; MAX_NODES + 1], [f64; MAX_NODES]) {
-        let (scale, both) = (self.power(h), self.both(places));
+    pub(super) fn rows_of_both(&self, both: &Both, h: f64, i: usize) -> ([f64; MAX_NODES + 1], [f64; MAX_NODES]) {
+        let scale = self.power(h);
         (padded(both.rates[i].map(|row| scale * row)), padded(both.strokes[i].map(|row| scale * row / h)))
     }
 

@@ -39,7 +39,7 @@ use super::gamma::reciprocal_gamma;
 use super::history::{History, Squares};
 use super::kernel::{Kernel, KernelError};
 use super::kind::Kind;
-use super::local::Local;
+use super::local::{Both, Local};
 use super::step::{Form, RatePolynomial, SEXTIC};
 use crate::collocation::{MAX_NODES, NODE_POLYNOMIAL, Nodes, Places};
 use serde::{Deserialize, Serialize};
@@ -281,6 +281,7 @@ impl Memory {
     /// [`Self::affine`] of three nodes at `places`.
     fn affine_at(&self, start: &StepStart, places: &Places, form: Form) -> Affine {
         let mut affine = Affine::default();
+        let both = self.both(form, Some(places));
         for (i, &theta) in places.positions().iter().enumerate() {
             if self.alpha == 0.0 {
                 affine.stroke[i][i] = 1.0;
@@ -303,7 +304,7 @@ impl Memory {
                     affine.history[i] += row[0] * start.rate;
                     affine.rate[i].copy_from_slice(&row[1..]);
                 }
-                Form::Hermite => self.take_both(start, i, Some(places), &mut affine),
+                Form::Hermite => self.take_both(&both, start, i, &mut affine),
             }
         }
         affine
@@ -311,6 +312,7 @@ impl Memory {
 
     fn affine(&self, start: &StepStart, nodes: Nodes, form: Form) -> Affine {
         let mut affine = Affine::default();
+        let both = self.both(form, None);
         for (i, &c) in nodes.positions().iter().enumerate() {
             if self.alpha == 0.0 {
                 affine.stroke[i][i] = 1.0;
@@ -336,14 +338,20 @@ impl Memory {
                     affine.history[i] += row[0] * start.rate;
                     affine.rate[i].copy_from_slice(&row[1..]);
                 }
-                Form::Hermite => self.take_both(start, i, None, &mut affine),
+                Form::Hermite => self.take_both(&both, start, i, &mut affine),
             }
         }
         affine
     }
 
-    fn take_both(&self, start: &StepStart, i: usize, places: Option<&Places>, affine: &mut Affine) {
-        let (rates, strokes) = self.local.rows_of_both(start.h, i, places);
+    /// What a step has of both strokes and rates, where it asks for it.
+    pub(super) fn both(&self, form: Form, places: Option<&Places>) -> Option<Both> {
+        (form == Form::Hermite && self.is_fractional()).then(|| self.local.both(places))
+    }
+
+    fn take_both(&self, both: &Option<Both>, start: &StepStart, i: usize, affine: &mut Affine) {
+        let Some(both) = both else { return };
+        let (rates, strokes) = self.local.rows_of_both(both, start.h, i);
         affine.history[i] += rates[0] * start.rate;
         affine.rate[i].copy_from_slice(&rates[1..]);
         affine.stroke[i] = strokes;

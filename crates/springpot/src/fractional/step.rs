@@ -75,12 +75,20 @@ impl RatePolynomial {
     pub(crate) const NONE: Self = Self { h: 0.0, u: [0.0; SEXTIC] };
 
     /// Through x' at 0 and at the three nodes of a step, with the integrals that x there tells (4 values each): of degree 6 ([`Form::Hermite`]).
-    pub fn through_strokes_and_rates(h: f64, places: Option<&Places>, [stroke, rate]: [&[f64]; 2]) -> Self {
+    pub fn through_strokes_and_rates(h: f64, places: Option<&Places>, known: [&[f64]; 2]) -> Self {
+        Self::through_both(h, (places, &Gaps::at(places)), known)
+    }
+
+    /// The same, where the gaps of such nodes are known.
+    pub(super) fn through_both(
+        h: f64,
+        (places, Gaps { node_polynomial, inverse }): (Option<&Places>, &Gaps),
+        [stroke, rate]: [&[f64]; 2],
+    ) -> Self {
         let mut polynomial = match places {
             None => Self::through_rates(h, Nodes::Radau, rate),
             Some(places) => Self::through_rates_at(h, places, rate),
         };
-        let Gaps { node_polynomial, inverse, .. } = Gaps::at(places);
         let gaps = polynomial.gaps(places, stroke).map(|gap| gap / h);
         for (k, row) in inverse.iter().enumerate() {
             let factor: f64 = row.iter().zip(gaps).map(|(weight, gap)| weight * gap).sum();

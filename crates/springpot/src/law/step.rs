@@ -265,6 +265,16 @@ impl Term {
 }
 
 impl LocalError {
+    /// Of a variable that is collocated at the nodes of the step, `value` at its end.
+    pub(super) fn collocated(error: f64, value: f64) -> Self {
+        Self { error, value, order: 0.0, falls: 4.0, sharpness: 1.0 }
+    }
+
+    /// Of a rate, `value` at the end of the step, as it was told.
+    pub(super) fn told(value: f64) -> Self {
+        Self { error: 0.0, value, order: 1.0, falls: 3.0, sharpness: 0.0 }
+    }
+
     /// The error in units of what is `allowed` where D^order x has the size `scale`.
     pub fn share(&self, scale: f64, allowed: f64) -> f64 {
         match self.error {

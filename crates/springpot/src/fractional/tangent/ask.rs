@@ -4,8 +4,7 @@ use super::columns::add;
 use super::order::{ByOrder, local_moments};
 use super::ports::{MEAN, Weights, key};
 use super::{MemoryTangent, TangentPoint, TangentStep};
-use crate::collocation::NODE_POLYNOMIAL;
-use crate::collocation::Nodes;
+use crate::collocation::{NODE_POLYNOMIAL, Nodes};
 use crate::fractional::history::History;
 use crate::fractional::kind::Kind;
 use crate::fractional::memory::{Memory, NEXT_TO_NODE};
@@ -44,6 +43,7 @@ impl MemoryTangent {
             }
             return;
         }
+        let both = memory.both(step.form, step.places);
         for i in 0..count {
             let (h, local) = (step.start.h, memory.local());
             match (step.form, step.places) {
@@ -56,8 +56,9 @@ impl MemoryTangent {
                 }
                 // x' itself.
                 (Form::Rates | Form::Hermite, _) if !memory.is_fractional() => {}
-                (Form::Hermite, places) => {
-                    let (rates, strokes) = local.rows_of_both(h, i, places);
+                (Form::Hermite, _) => {
+                    let Some(both) = &both else { continue };
+                    let (rates, strokes) = local.rows_of_both(both, h, i);
                     add(self.row(out, i), rates[0], start.delta_rate);
                     add(self.row(out, i), -strokes.iter().sum::<f64>(), start.delta_stroke);
                 }
@@ -127,7 +128,7 @@ impl MemoryTangent {
     }
 
     /// The derivative of D^α x without singular parts at θ, 0 < θ ≤ 1, whose kinematics are those of `point`; `delta_u` is that of the
-    /// coefficients u_p of the step, rows of P.
+    /// coefficients u_p of the step, as many rows of P.
     ///
     /// It is that of [`Memory::derivative_between`] inside a step of rates at Radau nodes, else of [`Memory::regular_derivative`].
     pub fn at(

@@ -20,7 +20,7 @@ pub struct TangentEnd<'a> {
 
 impl MemoryTangent {
     /// Takes an accepted step into the past, before the memory does; `delta_u` is the derivative of the coefficients u_p of its polynomial,
-    /// rows of P.
+    /// as many rows of P.
     ///
     /// With `end` what [`Memory::commit_rates`] does is differentiated, else [`Memory::commit`]. Of a debt the same share is paid as the
     /// memory pays of its own, none where it pays none.

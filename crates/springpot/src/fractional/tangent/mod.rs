@@ -70,7 +70,7 @@ use super::kernel::KernelError;
 use super::kind::Kind;
 use super::memory::{Memory, StepStart};
 use super::step::{CUBIC, Form, RatePolynomial, SEXTIC};
-use crate::collocation::{MAX_NODES, Nodes, Places};
+use crate::collocation::{Gaps, MAX_NODES, Nodes, Places};
 use columns::{Columns, add, rows};
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, dispatch, f64x8};
@@ -133,12 +133,11 @@ impl TangentStep<'_> {
         let parameters = out.len() / self.coefficients();
         if self.form == Form::Hermite {
             // What the strokes tell beside the rates is a small difference.
+            let of = (self.places, &Gaps::at(self.places));
             for j in 0..parameters {
                 let [stroke, rate] =
                     [delta_stroke, delta_rate].map(|all| [0, 1, 2, 3].map(|k| all[k * parameters + j]));
-                let known = [&stroke[..], &rate];
-                let RatePolynomial { u, .. } =
-                    RatePolynomial::through_strokes_and_rates(self.start.h, self.places, known);
+                let RatePolynomial { u, .. } = RatePolynomial::through_both(self.start.h, of, [&stroke, &rate]);
                 out[j..].iter_mut().step_by(parameters).zip(u).for_each(|(out, u)| *out = u);
             }
             return;

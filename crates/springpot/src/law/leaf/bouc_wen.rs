@@ -104,7 +104,7 @@ impl Leaf for BoucWen {
         let defect = step.h * step.quadrature_defect(&self.rates(step, &z));
         // What rounding leaves of a stroke is no error of z.
         let error = if defect <= self.hysteresis.slope_at_rest::<f64>() * step.resolution { 0.0 } else { defect };
-        errors.push(LocalError { error, value: z[step.nodes.count()], order: 0.0, falls: 4.0, sharpness: 1.0 });
+        errors.push(LocalError::collocated(error, z[step.nodes.count()]));
     }
 
     fn powers(&self, step: &Step, state: StateRef, powers: &mut Powers) {

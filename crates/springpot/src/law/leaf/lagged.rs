@@ -203,7 +203,7 @@ impl<L: Leaf> Leaf for Lagged<L> {
         let last = followed.inputs[step.nodes.count()].value;
         // What rounding leaves of a constant command is no error.
         let error = if error <= 4.0 * f64::EPSILON * last.abs() { 0.0 } else { error };
-        errors.push(LocalError { error, value: last, order: 0.0, falls: 4.0, sharpness: 1.0 });
+        errors.push(LocalError::collocated(error, last));
         self.leaf.local_errors(&followed.step(step), rest, errors);
     }
 

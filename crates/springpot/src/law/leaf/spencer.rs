@@ -200,7 +200,7 @@ impl Leaf for Spencer {
             let defect = step.h * quadrature_defect(step.nodes, &rates);
             // What rounding leaves of a stroke is no error of them.
             let error = if defect <= slope * step.resolution { 0.0 } else { defect };
-            errors.push(LocalError { error, value: values[last], order: 0.0, falls: 4.0, sharpness: 1.0 });
+            errors.push(LocalError::collocated(error, values[last]));
         }
     }
 

@@ -404,7 +404,7 @@ impl Leaf for Stack {
         let mut push = |rates: &Values, value: f64, rounding: f64| {
             let defect = step.h * quadrature_defect(step.nodes, rates);
             let error = if defect <= rounding { 0.0 } else { defect };
-            errors.push(LocalError { error, value, order: 0.0, falls: 4.0, sharpness: 1.0 });
+            errors.push(LocalError::collocated(error, value));
         };
         push(&current, charge[last], ROUNDING * volts * self.capacitance.value);
         if let VoltageDrop::BoucWen { hysteresis, .. } = &self.drop {

@@ -36,13 +36,7 @@ impl Leaf for Viscous {
     }
 
     fn local_errors(&self, step: &Step, _: StateRef, errors: &mut Vec<LocalError>) {
-        errors.push(LocalError {
-            error: 0.0,
-            value: step.rate[step.nodes.count()],
-            order: 1.0,
-            falls: 3.0,
-            sharpness: 0.0,
-        });
+        errors.push(LocalError::told(step.rate[step.nodes.count()]));
     }
 
     fn powers(&self, step: &Step, _: StateRef, powers: &mut Powers) {

@@ -550,7 +550,7 @@ fn of_friction(part: &Network, step: &Step, rate: &Values, compliance: f64, reso
     let end = step.nodes.count();
     let Slide { force, rate: turns } = part.ask().slides(step.inputs_at(end)).unwrap_or(NO_FRICTION);
     let value = turns * (rate[end] / turns).tanh();
-    let known = |error| LocalError { error, value, order: 1.0, falls: 3.0, sharpness: 1.0 };
+    let known = |error| LocalError { error, sharpness: 1.0, ..LocalError::told(value) };
     // Where it begins to slide far faster than v0 the force has a kink for every step: a shorter one only moves it by so much.
     if step.nodes != Nodes::Inner || step.h < NARROW * step.t {
         return known(0.0);

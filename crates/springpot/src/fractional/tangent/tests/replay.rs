@@ -3,8 +3,7 @@
 
 use super::super::order::ByOrder;
 use super::super::{Singular, TangentStep};
-use crate::collocation::NODE_POLYNOMIAL;
-use crate::collocation::{MAX_NODES, Nodes};
+use crate::collocation::{MAX_NODES, NODE_POLYNOMIAL, Nodes};
 use crate::fractional::exponentials::moments;
 use crate::fractional::memory::{Memory, NEXT_TO_NODE, collocated};
 use crate::fractional::step::SEXTIC;

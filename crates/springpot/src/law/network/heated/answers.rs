@@ -86,7 +86,7 @@ impl Part for Heated {
     }
 
     fn local_errors(&self, step: &Step, state: &mut StateRef, errors: &mut Vec<LocalError>) {
-        let order = |error, value| LocalError { error, value, order: 0.0, falls: 4.0, sharpness: SHARPNESS };
+        let order = |error, value| LocalError { sharpness: SHARPNESS, ..LocalError::collocated(error, value) };
         let Some((own, course, inside)) = self.look(step, state) else {
             errors.extend([order(f64::NAN, 1.0); 2].into_iter().take(self.own_errors()));
             return self.law.ask().pass(state);
