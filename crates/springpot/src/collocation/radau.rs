@@ -33,6 +33,23 @@ pub(crate) const ESTIMATE: [f64; 3] = [-0.428_298_294_115_368_1, 0.245_039_074_3
 pub(crate) const LEFT: [f64; 3] = [4.325_579_890_063_155, 0.339_199_251_815_809_87, 0.541_770_539_935_874_9];
 pub(crate) const RIGHT: [f64; 3] = [0.091_232_394_870_892_94, 0.241_717_932_707_107, 0.966_048_182_615_093];
 
+/// T of A T = T Λ, Λ = γ_0 and the block [[Re, Im], [−Im, Re]] of [`PAIR`]: the eigenvector [`RIGHT`], real and imaginary part of one of the pair.
+pub(crate) const APART: [[f64; 3]; 3] = [
+    [RIGHT[0], -0.141_255_295_020_954_2, -0.030_029_194_105_147_424],
+    [RIGHT[1], 0.204_129_352_293_799_93, 0.382_942_112_757_261_9],
+    [RIGHT[2], 1.0, 0.0],
+];
+
+/// T⁻¹, whose first row is [`LEFT`].
+pub(crate) const TOGETHER: [[f64; 3]; 3] = [
+    LEFT,
+    [-4.178_718_591_551_905, -0.327_682_820_761_062_4, 0.476_623_554_500_550_45],
+    [-0.502_872_634_945_786_9, 2.571_926_949_855_605_4, -0.596_039_204_828_224_9],
+];
+
+/// The pair of complex eigenvalues of A: real part, and imaginary part without its sign.
+pub(crate) const PAIR: [f64; 2] = [0.162_555_585_202_161_32, 0.184_949_324_407_140_8];
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -55,6 +72,16 @@ mod tests {
             assert!((right - GAMMA * RIGHT[i]).abs() < 1e-15 && (left - GAMMA * LEFT[i]).abs() < 4e-15);
         }
         assert!(((0..3).map(|i| LEFT[i] * RIGHT[i]).sum::<f64>() - 1.0).abs() < 1e-15);
+        let product = |x: &[[f64; 3]; 3], y: &[[f64; 3]; 3], i: usize, j: usize| -> f64 {
+            (0..3).map(|k| x[i][k] * y[k][j]).sum()
+        };
+        let [re, im] = PAIR;
+        let blocks = [[GAMMA, 0.0, 0.0], [0.0, re, im], [0.0, -im, re]];
+        for (i, j) in (0..9).map(|k| (k / 3, k % 3)) {
+            let unit = f64::from(u8::from(i == j));
+            assert!((product(&TOGETHER, &APART, i, j) - unit).abs() < 2e-15);
+            assert!((product(&A, &APART, i, j) - product(&APART, &blocks, i, j)).abs() < 1e-15);
+        }
         // The estimate vanishes where a quadratic through the stages meets the value at the start: constants and lines.
         let constant = GAMMA + ESTIMATE.iter().sum::<f64>();
         let line: f64 = ESTIMATE.iter().zip(RADAU_NODES).map(|(e, c)| e * c).sum();

@@ -37,6 +37,7 @@ pub(crate) use scale::Scale;
 pub(crate) use solve::Solve;
 pub(crate) use state::EquationsState;
 pub use steady::SteadyError;
+pub(crate) use tangent::Coupling;
 pub(crate) use variation::{
     Backwards, Endings, Entries, Found, NodeVariation, ROW, Recording, STAGE, Starts, StepErrors, TANGENTS, Told,
     Variation, VariationState,

@@ -52,7 +52,43 @@ pub(crate) fn couplings<'a>(
     all
 }
 
+#[cfg(test)]
+impl<'a> Coupling<'a> {
+    /// That of a force on all velocities that feels δq and δv.
+    pub(crate) fn between(on: &'a [f64], by: [&'a [f64]; 2], gain: [[[f64; MAX_NODES]; MAX_NODES]; 2]) -> Self {
+        Self { path: Path::State { on: Cow::Borrowed(on), by }, gain }
+    }
+}
+
 impl Coupling<'_> {
+    /// Whether it answers at each node of `count` to what is there alone, and alike at all.
+    pub(crate) fn is_uniform(&self, count: usize) -> bool {
+        let entry = |gain: &[[f64; MAX_NODES]; MAX_NODES], i: usize, j: usize| {
+            gain[i][j] - if i == j { gain[0][0] } else { 0.0 }
+        };
+        self.gain.iter().all(|gain| (0..count * count).all(|k| entry(gain, k / count, k % count) == 0.0))
+    }
+
+    /// What it acts on, and what it feels of δq and of δv, of the velocities `free`.
+    pub(crate) fn rows(&self, free: &[usize], [on, by_q, by_v]: [&mut Vec<f64>; 3]) {
+        let unit = |k: usize| move |&r: &usize| f64::from(u8::from(r == k));
+        for row in [&mut *on, by_q, by_v] {
+            row.clear();
+        }
+        match &self.path {
+            Path::Joint(k) => [on, by_q, by_v].into_iter().for_each(|row| row.extend(free.iter().map(unit(*k)))),
+            Path::Measure { on: push, by } => {
+                on.extend(free.iter().map(|&k| push[k]));
+                [by_q, by_v].into_iter().for_each(|row| row.extend(free.iter().map(|&k| by[k])));
+            }
+            Path::State { on: push, by: [q, v] } => {
+                on.extend(free.iter().map(|&k| push[k]));
+                by_q.extend(free.iter().map(|&k| q[k]));
+                by_v.extend(free.iter().map(|&k| v[k]));
+            }
+        }
+    }
+
     /// Adds on ⊗ (x·by of δq + y·by of δv) over the velocities `free` to a matrix whose line r begins at `line(r)`.
     #[inline(always)]
     pub(crate) fn add(&self, [x, y]: [f64; 2], free: &[usize], matrix: &mut [f64], line: impl Fn(usize) -> usize) {

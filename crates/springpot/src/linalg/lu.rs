@@ -2,6 +2,7 @@
 //! Computations, 4th ed. 2013, 3.4).
 
 use super::columns::{Block, LANES, put_block, take_block};
+use super::row_lu::RowLu;
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch, f64x8};
 
@@ -14,7 +15,12 @@ pub(crate) struct Lu {
     scratch: Vec<f64>,
     /// Room for blocks of columns.
     rows: [Vec<Block>; 2],
+    /// The factors of matrices of [`WIDE`] rows and more.
+    wide: RowLu<1>,
 }
+
+/// From so many rows on, whole rows go through wide registers.
+const WIDE: usize = 16;
 
 impl Lu {
     /// Factors the n × n matrix that `fill` writes row by row into zeros; `false` where it is singular or not finite.
@@ -26,6 +32,9 @@ impl Lu {
         self.order.clear();
         self.order.extend(0..n);
         fill(&mut self.entries);
+        if n >= WIDE {
+            return self.wide.factor(n, |r, [row]| row.copy_from_slice(&self.entries[r * n..][..n]));
+        }
         let m = &mut self.entries;
         for k in 0..n {
             let size = |row: usize, m: &[f64]| m[row * n + k].abs();
@@ -68,6 +77,9 @@ impl Lu {
     /// Solves in place: `x` holds the right-hand side before and the solution after.
     pub(crate) fn solve(&mut self, x: &mut [f64]) {
         let n = self.n;
+        if n >= WIDE {
+            return self.wide.solve([x]);
+        }
         for (slot, &source) in self.scratch.iter_mut().zip(&self.order) {
             *slot = x[source];
         }
@@ -86,6 +98,9 @@ impl Lu {
 
     /// Solves for `count` right-hand sides at once, which stand side by side: row k of `x` has component k of all of them.
     pub(crate) fn solve_rows(&mut self, x: &mut [f64], count: usize) {
+        if self.n >= WIDE {
+            return self.wide.solve_rows(x, count);
+        }
         let Self { n, entries, order, rows: [given, found], .. } = self;
         for rows in [&mut *given, &mut *found] {
             rows.resize(*n, [0.0; LANES]);
@@ -121,11 +136,19 @@ fn solve_block<S: Simd>(simd: S, (entries, order): (&[f64], &[usize]), given: &[
 
 #[cfg(test)]
 mod tests {
-    use super::Lu;
+    use super::{Lu, WIDE};
 
     #[test]
     fn solves_and_tells_singular_matrices() {
-        let n = 7;
+        solves(7);
+        solves(WIDE + 3);
+        let mut lu = Lu::default();
+        assert!(!lu.factor(2, |m| m.copy_from_slice(&[1.0, 2.0, 2.0, 4.0])));
+        assert!(!lu.factor(1, |m| m[0] = f64::NAN));
+        assert!(!lu.factor(WIDE, |m| m.fill(1.0)));
+    }
+
+    fn solves(n: usize) {
         let entry = |r: usize, c: usize| ((3 * r + 5 * c * c) as f64).sin() + if r == (c + 3) % n { 4.0 } else { 0.0 };
         let x: Vec<f64> = (0..n).map(|k| (k as f64).cos()).collect();
         let mut y: Vec<f64> = (0..n).map(|r| (0..n).map(|c| entry(r, c) * x[c]).sum()).collect();
@@ -147,7 +170,5 @@ mod tests {
             let is_same = |k: usize| (rows[k] - each[k % count][k / count]).abs() < 1e-14;
             assert!((0..count * n).all(is_same), "{rows:?}");
         }
-        assert!(!lu.factor(2, |m| m.copy_from_slice(&[1.0, 2.0, 2.0, 4.0])));
-        assert!(!lu.factor(1, |m| m[0] = f64::NAN));
     }
 }

@@ -8,6 +8,7 @@ mod hessenberg;
 mod independence;
 mod least_norm;
 mod lu;
+mod row_lu;
 mod svd;
 mod triangle;
 
@@ -18,6 +19,7 @@ pub(crate) use hessenberg::eigenvalues;
 pub(crate) use independence::{are_independent, cholesky_solve};
 pub(crate) use least_norm::LeastNorm;
 pub(crate) use lu::Lu;
+pub(crate) use row_lu::RowLu;
 pub(crate) use svd::column_singular_values;
 pub(crate) use triangle::Triangle;
 

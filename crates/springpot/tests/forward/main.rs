@@ -1,5 +1,6 @@
 //! Robots that move by themselves: references, limits, orders, energies, drives, failures.
 
+mod chains;
 mod drives;
 mod failures;
 mod floating;

@@ -42,16 +42,19 @@ impl RadauStep {
         let along = |m: &[[f64; MAX_NODES]; MAX_NODES]| -> f64 {
             (0..3).map(|i| LEFT[i] * (0..3).map(|j| m[i][j] * RIGHT[j]).sum::<f64>()).sum()
         };
-        for coupling in equations.couplings() {
+        let couplings = equations.couplings();
+        for coupling in &couplings {
             let [stroke, rate] = coupling.gain.each_ref().map(along);
             coupling.add([stroke, rate / step], free, &mut scratch.stiffness, |r| r * count);
         }
-        let regular = self.filter.factor(count, |matrix| {
-            for (k, entry) in matrix.iter_mut().enumerate() {
-                let at = free[k / count] * n + free[k % count];
-                *entry = slopes.d_a[at] + step * slopes.d_v[at] + step * step * scratch.stiffness[k];
-            }
-        });
+        scratch.is_factored = self.system.has_filter(&couplings);
+        let regular = scratch.is_factored
+            || self.filter.factor(count, |matrix| {
+                for (k, entry) in matrix.iter_mut().enumerate() {
+                    let at = free[k / count] * n + free[k % count];
+                    *entry = slopes.d_a[at] + step * slopes.d_v[at] + step * step * scratch.stiffness[k];
+                }
+            });
         if !regular {
             return (f64::INFINITY, free[0]);
         }
@@ -71,7 +74,10 @@ impl RadauStep {
             });
             scratch.error.push(row.sum());
         }
-        self.filter.solve(&mut scratch.error);
+        match scratch.is_factored {
+            true => self.system.filter(&mut scratch.error, 1),
+            false => self.filter.solve(&mut scratch.error),
+        }
     }
 
     /// rms of the error in `scratch` in units of the tolerance.

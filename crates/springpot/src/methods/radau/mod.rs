@@ -16,6 +16,7 @@ mod sizes;
 mod stages;
 mod start;
 mod step;
+mod system;
 mod variation;
 
 pub(crate) use method::{Radau, StepperState};

@@ -1,14 +1,34 @@
 //! The Newton iteration for the accelerations of the stages: three unknowns for each free velocity.
 
 use super::step::RadauStep;
-use crate::collocation::radau::{A, A_SQUARED};
-use crate::collocation::{MAX_NODES, STAGES};
+use crate::collocation::STAGES;
+use crate::collocation::radau::A;
 use crate::equations::Equations;
 use crate::equations::context::Context;
 use crate::system::error::RunError;
+use serde::{Deserialize, Serialize};
 
 /// Newton iterations after which a step is given up.
 const MOST_ITERATIONS: u32 = 10;
+
+/// Ratio of increments that larger ones are taken for, and what is not known since the iteration diverged.
+const MOST_CONTRACTION: f64 = 0.9;
+
+/// Ratio of successive increments of the iteration, in the step where it was seen last.
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+pub(super) struct Contraction {
+    ratio: f64,
+    /// Size of that step, s; 0 where none was seen.
+    size: f64,
+}
+
+impl Contraction {
+    /// What may be expected of a step of size `h`: what the matrix does not know of a step grows at least as its square.
+    fn at(self, h: f64) -> f64 {
+        let grown = if self.size > 0.0 { (h / self.size).max(1.0) } else { 1.0 };
+        (self.ratio * grown * grown).clamp(1e-3, MOST_CONTRACTION)
+    }
+}
 
 /// How a step went.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,7 +70,7 @@ impl RadauStep {
             return Ok(Outcome::Converged { iterations });
         }
         equations.take_input_forces();
-        if !self.factor(equations, h) {
+        if !self.system.factor(equations, self.model.nv(), h) {
             return Ok(Outcome::Diverged { iterations, worst });
         }
         loop {
@@ -60,7 +80,7 @@ impl RadauStep {
             if let Some(k) = self.residual.iter().position(|r| !r.is_finite()) {
                 return Ok(Outcome::Diverged { iterations, worst: free[k % count] });
             }
-            self.newton.solve(&mut self.residual);
+            self.system.solve(&mut self.residual);
             for (stage, change) in self.stages.iter_mut().zip(self.residual.chunks_exact(count)) {
                 for (&k, delta) in free.iter().zip(change) {
                     stage.a[k] -= delta;
@@ -76,13 +96,13 @@ impl RadauStep {
                 equations.answer();
             }
             if iterations > 1 {
-                self.contraction = size / before;
+                self.contraction = Contraction { ratio: size / before, size: h };
             }
-            if !placed || (iterations > 2 && self.contraction >= 1.0) {
-                self.contraction = 0.0;
+            if !placed || (iterations > 2 && self.contraction.ratio >= 1.0) {
+                self.contraction = Contraction { ratio: MOST_CONTRACTION, size: h };
                 return Ok(Outcome::Diverged { iterations, worst });
             }
-            let theta = self.contraction.clamp(1e-3, 0.9);
+            let theta = self.contraction.at(h);
             if size * theta / (1.0 - theta) <= 1.0 {
                 break;
             }
@@ -101,38 +121,6 @@ impl RadauStep {
         for (i, stage) in self.stages.iter().enumerate() {
             equations.residual(cx, i + 1, stage.node(t_end), &stage.kinematics, &mut self.residual);
         }
-    }
-
-    /// I⊗M + hA⊗D + h²A²⊗K + Σ on ⊗ (h² G A² by_q + h P A by_v) of all couplings, over the free velocities.
-    fn factor(&mut self, equations: &Equations, h: f64) -> bool {
-        let (n, free, slopes) = (self.model.nv(), equations.free(), equations.slopes());
-        let (count, couplings) = (free.len(), equations.couplings());
-        let size = STAGES * count;
-        let product = |x: &[[f64; MAX_NODES]; MAX_NODES], y: &[[f64; STAGES]; STAGES], i: usize, j: usize| -> f64 {
-            (0..STAGES).map(|m| x[i][m] * y[m][j]).sum()
-        };
-        self.newton.factor(size, |matrix| {
-            for i in 0..STAGES {
-                for j in 0..STAGES {
-                    let (damping, stiffness) = (h * A[i][j], h * h * A_SQUARED[i][j]);
-                    let line = |r: usize| (i * count + r) * size + j * count;
-                    for (r, &row) in free.iter().enumerate() {
-                        for (entry, &column) in matrix[line(r)..][..count].iter_mut().zip(free) {
-                            let at = row * n + column;
-                            *entry = damping * slopes.d_v[at] + stiffness * slopes.d_q[at];
-                            if i == j {
-                                *entry += slopes.d_a[at];
-                            }
-                        }
-                    }
-                    for coupling in &couplings {
-                        let [stroke, rate] = &coupling.gain;
-                        let share = [h * h * product(stroke, &A_SQUARED, i, j), h * product(rate, &A, i, j)];
-                        coupling.add(share, free, matrix, line);
-                    }
-                }
-            }
-        })
     }
 
     /// rms over stages and velocities of |h Σ_j A_ij Δa_j| in units of what the iteration may leave, and the velocity with the largest

@@ -1,7 +1,9 @@
 //! What one step of Radau IIA(5) in the accelerations works on: its start and its stages.
 
 use super::errors::Errors;
+use super::newton::Contraction;
 use super::sizes::{Sizes, Tolerance};
+use super::system::StageSystem;
 use super::variation::TurnedStages;
 use crate::actuation::Forward;
 use crate::collocation::radau::A;
@@ -37,7 +39,7 @@ pub(super) struct Carried {
     origin: Origin,
     cubic: [Vec<f64>; STAGES + 1],
     last: Option<f64>,
-    contraction: f64,
+    contraction: Contraction,
     sizes: Sizes,
 }
 
@@ -51,13 +53,13 @@ pub(super) struct RadauStep {
     pub(super) fitted: Fitted,
     /// Accelerations that a run with a singular start arrived with at the origin, where their share of it was taken off.
     arrived: Option<Vec<f64>>,
-    pub(super) newton: Solve,
+    pub(super) system: StageSystem,
     pub(super) filter: Solve,
     pub(super) residual: Vec<f64>,
     /// Coordinates of joints that no force drives, while the others are moved.
     pub(super) held: Vec<f64>,
     /// Ratio of successive increments, carried from step to step.
-    pub(super) contraction: f64,
+    pub(super) contraction: Contraction,
     pub(super) errors: Errors,
     pub(super) scratch: EstimateScratch,
     /// What parameters change of joints that turn freely, over the step that was varied last.
@@ -83,6 +85,8 @@ pub(super) struct EstimateScratch {
     pub(super) positions: Vec<f64>,
     pub(super) velocities: Vec<f64>,
     pub(super) stiffness: Vec<f64>,
+    /// Whether the filter was factored with the system of the step.
+    pub(super) is_factored: bool,
     pub(super) error: Vec<f64>,
     /// Of what parameters change, in blocks: raw estimates of velocities and places, and the filtered ones.
     pub(super) changes: [Vec<f64>; 3],
@@ -107,11 +111,11 @@ impl RadauStep {
             stages: std::array::from_fn(|_| stage.clone()),
             fitted: Fitted { regular: rows(), cubic: rows(), turning: rows(), last: None },
             arrived: None,
-            newton: Solve::default(),
+            system: StageSystem::default(),
             filter: Solve::default(),
             residual: Vec::new(),
             held: Vec::new(),
-            contraction: 0.0,
+            contraction: Contraction::default(),
             errors: Errors::new(tolerance, Sizes::new(&forward.q, nv)),
             scratch: EstimateScratch::default(),
             turned: Vec::new(),

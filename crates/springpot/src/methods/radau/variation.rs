@@ -157,7 +157,7 @@ impl RadauStep {
             return 0.0;
         }
         let [start, stages @ .., _] = &variation.nodes;
-        let EstimateScratch { changes: [speeds, places, errors], stiffness, .. } = &mut self.scratch;
+        let EstimateScratch { changes: [speeds, places, errors], stiffness, is_factored, .. } = &mut self.scratch;
         [&mut *speeds, places].into_iter().for_each(|blocks| blocks.resize(free.len() * count, 0.0));
         for (r, &k) in free.iter().enumerate() {
             let block = k * count..(k + 1) * count;
@@ -188,7 +188,10 @@ impl RadauStep {
                 add(error, [mass, -stiffness], [speed, place]);
             }
         }
-        self.filter.solve_rows(errors, count);
+        match is_factored {
+            true => self.system.filter(errors, count),
+            false => self.filter.solve_rows(errors, count),
+        }
         places.iter_mut().zip(&*errors).for_each(|(place, error)| *place += step * error);
         let (rtol, errors) = (TANGENTS * self.errors.tolerance.rtol, [&errors[..], &places[..]]);
         variation.step_error(&free, StepErrors { errors, moved: &self.errors.sized, rtol })
