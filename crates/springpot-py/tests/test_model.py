@@ -125,10 +125,30 @@ def test_identities(ur5: sp.Model) -> None:
         np.testing.assert_allclose(rate, (there[0] - there[1]) / (2 * step), atol=1e-6)
 
 
+def test_bodies_and_materials_are_one_least_squares_problem() -> None:
+    path = ROOT / "scenarios" / "thermoviscoelastic_order.toml"
+    arm = sp.Model.from_scenario(path)
+    t = np.linspace(0.0, 2.0, 801)
+    q = 0.4 * np.sin(np.outer(t, [3.0, 4.1, 5.3])) + np.outer(t**2, [0.1, -0.2, 0.15])
+    v = 0.4 * np.cos(np.outer(t, [3.0, 4.1, 5.3])) * [3.0, 4.1, 5.3] + np.outer(2 * t, [0.1, -0.2, 0.15])
+    a = -0.4 * np.sin(np.outer(t, [3.0, 4.1, 5.3])) * np.array([3.0, 4.1, 5.3]) ** 2 + [0.2, -0.4, 0.3]
+    last = arm.body_names[-1]
+    columns = sp.element_regressor(arm, ("world", [0.3, 0.2, 0.5]), (last, [0.05, 0.0, 0.02]), t, q, 0.4, [0, 0.5, 1])
+    assert columns.shape == (801, arm.nv, 3)
+    bodies = arm.joint_torque_regressor(q, v, a)
+    np.testing.assert_allclose(bodies @ arm.body_numbers + arm.armature * a, arm.rnea(q, v, a), atol=1e-10)
+    wanted = np.array([300.0, 40.0, 6.0])
+    torque = bodies @ arm.body_numbers + columns @ wanted
+    both = np.concatenate([bodies, columns], axis=2).reshape(-1, bodies.shape[2] + 3)
+    found = np.linalg.lstsq(both, torque.reshape(-1), rcond=1e-12)[0]
+    np.testing.assert_allclose(found[-3:], wanted, rtol=1e-6)
+
+
 CALLS = [
     ("rnea", "qva"), ("nonlinear_effects", "qv"), ("aba", "qva"), ("crba", "q"), ("mass_inverse", "q"), ("coriolis", "qv"),
     ("gravity", "q"), ("rnea_derivatives", "qva"), ("aba_derivatives", "qva"), ("com", "q"), ("com_jacobian", "q"),
-    ("kinetic_energy", "qv"), ("potential_energy", "q"), ("integrate", "qv"), ("normalise", "q"), ("difference", "qq"),
+    ("centroidal_matrix", "q"), ("centroidal_matrix_rate", "qv"), ("joint_torque_regressor", "qva"), ("mass_derivative", "q"),
+    ("rnea_second_derivatives", "qva"), ("kinetic_energy", "qv"), ("potential_energy", "q"), ("integrate", "qv"), ("normalise", "q"), ("difference", "qq"),
 ]  # fmt: skip
 
 

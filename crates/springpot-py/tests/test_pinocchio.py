@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pathlib
 from typing import Any
 
 import arms
@@ -205,3 +206,33 @@ def test_bad_arguments() -> None:
     body(turning, 1, pin.JointModelSphericalZYX(), "turning", (0.0, 0.0, 0.0))
     with pytest.raises(ValueError, match='joint "turning".*no tangents'):
         springpot.pinocchio.Elements(turning, [])
+
+
+ROBOTS = pathlib.Path(__file__).parents[3] / "testdata" / "multibody"
+
+
+@pytest.mark.parametrize("name", ["ur5", "anymal_b"])
+def test_momenta_regressors_and_second_derivatives_are_pinocchios(name: str) -> None:
+    path = ROBOTS / f"{name}.urdf"
+    ours = sp.Model.from_urdf(path)
+    theirs = pin.buildModelFromUrdf(str(path))
+    data = theirs.createData()
+    order = [ours.v_names.index(name) for name in list(theirs.names)[1:]]
+    rng = np.random.default_rng(31)
+    for _ in range(5):
+        q, v, a = rng.uniform(-1.0, 1.0, (3, ours.nv))
+        p, w, u = q[order], v[order], a[order]
+        pin.dccrba(theirs, data, p, w)
+        np.testing.assert_allclose(ours.centroidal_matrix(q)[:, order], data.Ag, atol=1e-12)
+        np.testing.assert_allclose(ours.centroidal_matrix_rate(q, v)[:, order], data.dAg, atol=1e-11)
+        theirs_y = pin.computeJointTorqueRegressor(theirs, data, p, w, u)
+        theirs_pi = np.concatenate([inertia.toDynamicParameters() for inertia in list(theirs.inertias)[1:]])
+        ours_tau = ours.joint_torque_regressor(q, v, a) @ ours.body_numbers
+        np.testing.assert_allclose(ours_tau[order], theirs_y @ theirs_pi, atol=1e-10)
+        if hasattr(pin, "ComputeRNEASecondOrderDerivatives"):
+            by_q, by_v, by_qv, by_aq = pin.ComputeRNEASecondOrderDerivatives(theirs, data, p, w, u)
+            found = [cube[np.ix_(order, order, order)] for cube in ours.rnea_second_derivatives(q, v, a)]
+            np.testing.assert_allclose(found[0], by_q, atol=1e-9)
+            np.testing.assert_allclose(found[2], by_v, atol=1e-9)
+            np.testing.assert_allclose(found[1], np.swapaxes(by_qv, 1, 2), atol=1e-9)
+            np.testing.assert_allclose(found[3], np.swapaxes(by_aq, 1, 2), atol=1e-9)

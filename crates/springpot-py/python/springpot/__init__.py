@@ -25,6 +25,7 @@ from ._design import Design, DesignedParameter, design
 from ._fit import Fit, Parameter, Problem, fit, problem
 from ._gradient import gradient
 from ._law import Master, datasheet, law, laws, master, network, prony
+from ._regressor import element_regressor
 from ._run import Run, run
 from ._springpot import Bank, Law, Model, Prony, Simulation, SimulationState, Snapshot, __version__
 
@@ -56,6 +57,7 @@ __all__ = [
     "datasheet",
     "design",
     "fit",
+    "element_regressor",
     "fractional",
     "gradient",
     "law",

@@ -6,9 +6,10 @@ use super::batch::{each, one_by_one, one_result};
 use crate::error::model_error;
 use pyo3::prelude::*;
 use springpot::dynamics::{
-    aba_derivatives_into, aba_into, batch, christoffel_into, com, com_jacobian_into, coriolis_into, crba_into,
-    gravity_into, kinetic_energy, mass_inverse_into, nonlinear_effects_into, potential_energy, rnea_derivatives_into,
-    rnea_into,
+    BODY_NUMBERS, RneaSecondDerivatives, aba_derivatives_into, aba_into, batch, centroidal_matrix_into,
+    centroidal_matrix_rate_into, christoffel_into, com, com_jacobian_into, coriolis_into, crba_into, gravity_into,
+    joint_torque_regressor_into, kinetic_energy, mass_derivative_into, mass_inverse_into, nonlinear_effects_into,
+    potential_energy, rnea_derivatives_into, rnea_into, rnea_second_derivatives,
 };
 
 type Any<'py> = Bound<'py, PyAny>;
@@ -247,6 +248,115 @@ impl PyModel {
             |model, scratch, [q], jacobian| {
                 scratch.kinematics.update_position(model, q);
                 com_jacobian_into(model, &scratch.kinematics, &mut scratch.workspace, jacobian);
+            },
+        )
+    }
+
+    /// The centroidal momentum matrix A(q): shape ``(6, nv)``; A v is the momentum of the robot, linear above angular about the centre of mass, world axes.
+    #[pyo3(signature = (q, out=None))]
+    fn centroidal_matrix<'py>(&self, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
+        let n = self.nv();
+        one_result(
+            &self.core,
+            [(q, Q("q"))],
+            &[6, n],
+            out,
+            |m, w, [q], [matrix]| batch::centroidal_matrix_into(m, w, q, matrix),
+            |model, scratch, [q], matrix| {
+                scratch.kinematics.update_position(model, q);
+                centroidal_matrix_into(model, &scratch.kinematics, &mut scratch.workspace, matrix);
+            },
+        )
+    }
+
+    /// Its time derivative: shape ``(6, nv)``; A a + Ȧ v are the forces from outside, and their moment about the centre of mass.
+    #[pyo3(signature = (q, v, out=None))]
+    fn centroidal_matrix_rate<'py>(&self, q: &Any<'py>, v: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
+        let (n, inputs) = (self.nv(), [(q, Q("q")), (v, V("v"))]);
+        one_result(
+            &self.core,
+            inputs,
+            &[6, n],
+            out,
+            |m, w, [q, v], [rate]| batch::centroidal_matrix_rate_into(m, w, q, v, rate),
+            |model, scratch, [q, v], rate| {
+                scratch.kinematics.update_velocity(model, q, v);
+                centroidal_matrix_rate_into(model, &scratch.kinematics, &mut scratch.workspace, rate);
+            },
+        )
+    }
+
+    /// The joint torque regressor Y(q, v, a): shape ``(nv, 10 bodies)``, so that ``Y @ body_numbers`` is :meth:`rnea` without what armatures ask for.
+    ///
+    /// Bodies stand in the order of :attr:`body_names`, each with its mass, first moment (x, y, z) and inertia about the origin of its frame (xx, xy, yy,
+    /// xz, yz, zz). What elements ask for is linear too: :func:`springpot.element_regressor`.
+    ///
+    /// >>> import springpot as sp
+    /// >>> arm = sp.Model.from_scenario({"robot": {"body": [{"name": "arm", "mass": 2, "com": [0.5, 0, 0],
+    /// ...     "joint": {"name": "q1", "kind": "revolute", "axis": [0, 1, 0]}}]}})
+    /// >>> (arm.joint_torque_regressor([0.0], [0.0], [0.0]) @ arm.body_numbers).round(9)
+    /// array([-9.81])
+    #[pyo3(signature = (q, v, a, out=None))]
+    fn joint_torque_regressor<'py>(
+        &self,
+        q: &Any<'py>,
+        v: &Any<'py>,
+        a: &Any<'py>,
+        out: Option<&Any<'py>>,
+    ) -> PyResult<Any<'py>> {
+        let inputs = [(q, Q("q")), (v, V("v")), (a, V("a"))];
+        one_result(
+            &self.core,
+            inputs,
+            &[self.nv(), BODY_NUMBERS * self.core.model.body_names().len()],
+            out,
+            |m, w, [q, v, a], [regressor]| batch::joint_torque_regressor_into(m, w, q, v, a, regressor),
+            |model, scratch, [q, v, a], regressor| {
+                scratch.kinematics.update_velocity(model, q, v);
+                joint_torque_regressor_into(model, &scratch.kinematics, a, &mut scratch.workspace, regressor);
+            },
+        )
+    }
+
+    /// ∂M/∂q of :meth:`crba`: shape ``(nv, nv, nv)``, the coordinate last; of joints of several degrees along their velocities.
+    #[pyo3(signature = (q, out=None))]
+    fn mass_derivative<'py>(&self, q: &Any<'py>, out: Option<&Any<'py>>) -> PyResult<Any<'py>> {
+        let n = self.nv();
+        one_result(
+            &self.core,
+            [(q, Q("q"))],
+            &[n, n, n],
+            out,
+            |m, w, [q], [derivative]| batch::mass_derivative_into(m, w, q, derivative),
+            |model, scratch, [q], derivative| {
+                scratch.kinematics.update_position(model, q);
+                mass_derivative_into(model, &scratch.kinematics, &mut scratch.workspace, derivative);
+            },
+        )
+    }
+
+    /// Second derivatives of :meth:`rnea`: of ∂tau/∂q by q, of ∂tau/∂v by q, of ∂tau/∂v by v, of ∂tau/∂a by q, each of shape ``(nv, nv, nv)``, that by
+    /// which is differentiated last at the end; by q along the velocities.
+    #[pyo3(signature = (q, v, a, out=None))]
+    fn rnea_second_derivatives<'py>(
+        &self,
+        q: &Any<'py>,
+        v: &Any<'py>,
+        a: &Any<'py>,
+        out: Option<&Any<'py>>,
+    ) -> PyResult<[Any<'py>; 4]> {
+        let (n, inputs) = (self.nv(), [(q, Q("q")), (v, V("v")), (a, V("a"))]);
+        each(
+            &self.core,
+            inputs,
+            [&[n, n, n]; 4],
+            out,
+            |m, w, inputs, cubes| batch::rnea_second_derivatives_into(m, w, inputs, cubes),
+            |model, _, [q, v, a], cubes| {
+                let RneaSecondDerivatives { d_q_q, d_v_q, d_v_v, d_a_q } = rnea_second_derivatives(model, q, v, a);
+                for (cube, found) in cubes.into_iter().zip([d_q_q, d_v_q, d_v_v, d_a_q]) {
+                    cube.copy_from_slice(&found);
+                }
             },
         )
     }

@@ -166,6 +166,12 @@ impl PyModel {
         PyArray1::from_slice(py, self.core.model.rotors())
     }
 
+    /// What :meth:`joint_torque_regressor` has columns for: 10 numbers a body, kg, kg·m and kg·m², shape ``(10 bodies,)``.
+    #[getter]
+    fn body_numbers<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_vec(py, springpot::dynamics::body_numbers(&self.core.model))
+    }
+
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         notebook::html("model", slf)
     }

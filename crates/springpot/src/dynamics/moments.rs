@@ -15,6 +15,20 @@ pub(super) fn reference<T: Scalar>(kinematics: &Kinematics<T>) -> Vec3<T> {
     kinematics.link(1).translation
 }
 
+/// Columns and inertias of all links at the reference point.
+#[inline(always)]
+pub(super) fn at_reference<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, ws: &mut Workspace<T>) {
+    let origin = reference(kinematics);
+    for j in 0..model.joint_count() {
+        let link = kinematics.link(j + 1);
+        let arm = link.translation - origin;
+        for k in model.degrees_of(j) {
+            ws.axes.unit[k] = joint::unit_motion(model, &model.degrees()[k], link, arm);
+        }
+        ws.composite[j] = Inertia::from_f64(model.link_inertia(j)).rotated(&link.rotation).shifted(arm);
+    }
+}
+
 /// Velocities, accelerations (less gravity) where a = 0, columns and inertia forces of all links at the reference point.
 #[inline(always)]
 pub(super) fn motions_at_rest<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, ws: &mut Workspace<T>) {
@@ -49,9 +63,7 @@ pub(super) fn motions<T: Scalar>(
             let degree = &model.degrees()[k];
             let unit = joint::unit_motion(model, degree, link, arm);
             if !moves(degree.index) && joint::is_shift(degree) {
-                let along =
-                    |motion: Motion<T>| Motion { angular: Vec3::ZERO, linear: motion.angular.cross(unit.linear) };
-                let (rate, second) = (along(carrier), along(pushed));
+                let (rate, second) = (turned_by(carrier, unit), turned_by(pushed, unit));
                 let turned = Motion { angular: Vec3::ZERO, linear: carrier.angular.cross(rate.linear) };
                 (ws.axes.unit[k], ws.axes.rate[k], ws.axes.second_rate[k]) = (unit, rate, second + turned);
                 continue;
@@ -80,4 +92,10 @@ pub(super) fn motions<T: Scalar>(
         ws.body_coriolis[j] = BodyCoriolis::new(&inertia, velocity, momentum);
         ws.composite[j] = inertia;
     }
+}
+
+/// How a unit shift changes under a turning frame.
+#[inline(always)]
+fn turned_by<T: Scalar>(motion: Motion<T>, unit: Motion<T>) -> Motion<T> {
+    Motion { angular: Vec3::ZERO, linear: motion.angular.cross(unit.linear) }
 }

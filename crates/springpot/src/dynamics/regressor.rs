@@ -1,19 +1,151 @@
-//! What changed inertias and a changed field of gravity ask of the joints.
+//! What inertias and gravity ask of the joints: linear in the numbers of the bodies.
 
 use super::joint;
 use super::kinematics::Kinematics;
-use super::moments::reference;
+use super::moments::{motions, reference};
 use super::workspace::Workspace;
 use crate::model::Model;
-use crate::spatial::{Inertia, Motion, Vec3};
+use crate::spatial::{Inertia, Motion, Rotation, Scalar, Symmetric3, Vec3};
+
+/// Numbers of a body in the order of [`joint_torque_regressor_into`].
+pub const BODY_NUMBERS: usize = 10;
+
+/// Joint torque regressor Y(q, v, a): τ = Y π + rotors · a, with τ of [`rnea_into`](super::rnea_into) without pairs and the numbers π of all bodies.
+///
+/// `regressor` is nv × 10·bodies, row-major (all entries are written); needs velocities; `a` (nv). Bodies stand in the order of
+/// [`Model::body_names`], each with its mass, first moment (x, y, z) and inertia about the origin of the body's frame (xx, xy, yy, xz, yz, zz), in its
+/// axes: [`body_numbers`]. Columns of bodies fixed to the world are 0. A rotor, the armature of its joint, asks for itself times a alone.
+/// Source: C. G. Atkeson, C. H. An and J. M. Hollerbach, Estimation of inertial parameters of manipulator loads and links, Int. J. Rob. Res. 5(3), 1986.
+#[inline(always)]
+pub fn joint_torque_regressor_into<T: Scalar>(
+    model: &Model,
+    kinematics: &Kinematics<T>,
+    a: &[T],
+    workspace: &mut Workspace<T>,
+    regressor: &mut [T],
+) {
+    let (n, width) = (model.nv(), BODY_NUMBERS * model.frames().len());
+    assert_eq!(regressor.len(), n * width, "the regressor is nv x 10 bodies");
+    regressor.fill(T::ZERO);
+    if n == 0 {
+        return;
+    }
+    motions(model, kinematics, Some(&a[..n]), workspace, |_| true);
+    for (body, frame) in model.frames().iter().enumerate() {
+        let Some(joint) = frame.link().checked_sub(1) else { continue };
+        let motion = LinkMotion::new(kinematics, workspace, joint);
+        let mut units = [Inertia::ZERO; BODY_NUMBERS];
+        for which in 0..BODY_NUMBERS {
+            units[which] = unit_number(which).to_parent(frame.placement());
+        }
+        for k in joint::path_to_world(model, frame.link()) {
+            let efforts = motion.efforts(workspace.axes.unit[k]);
+            let first = model.degrees()[k].index * width + body * BODY_NUMBERS;
+            for which in 0..BODY_NUMBERS {
+                regressor[first + which] += efforts.of(&units[which]);
+            }
+        }
+    }
+}
+
+/// [`joint_torque_regressor_into`], allocating.
+pub fn joint_torque_regressor<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, a: &[T]) -> Vec<T> {
+    let mut regressor = vec![T::ZERO; model.nv() * BODY_NUMBERS * model.frames().len()];
+    joint_torque_regressor_into(model, kinematics, a, &mut Workspace::new(model), &mut regressor);
+    regressor
+}
+
+/// The numbers of all bodies that [`joint_torque_regressor_into`] has columns for: 10 a body, kg, kg·m and kg·m².
+pub fn body_numbers(model: &Model) -> Vec<f64> {
+    let numbers = |inertia: &Inertia| {
+        let (Vec3([x, y, z]), j) = (inertia.first_moment, inertia.rotational);
+        [inertia.mass, x, y, z, j.xx, j.xy, j.yy, j.xz, j.yz, j.zz]
+    };
+    model.body_inertias().iter().flat_map(numbers).collect()
+}
+
+/// An inertia of which one number is 1 and the others are 0.
+#[inline(always)]
+fn unit_number(which: usize) -> Inertia {
+    let mut of = [0.0; BODY_NUMBERS];
+    of[which] = 1.0;
+    let [mass, x, y, z, xx, xy, yy, xz, yz, zz] = of;
+    Inertia { mass, first_moment: Vec3([x, y, z]), rotational: Symmetric3 { xx, yy, zz, xy, xz, yz } }
+}
+
+/// How a link moves, in its own frame.
+struct LinkMotion<T> {
+    rotation: Rotation<T>,
+    arm: Vec3<T>,
+    omega: Vec3<T>,
+    alpha: Vec3<T>,
+    /// a + ω × v, less gravity.
+    d: Vec3<T>,
+}
+
+/// What a joint is asked for by the numbers of a link.
+struct Efforts<T> {
+    of_mass: T,
+    of_moment: Vec3<T>,
+    of_inertia: Symmetric3<T>,
+}
+
+impl<T: Scalar> LinkMotion<T> {
+    /// `workspace` as [`motions`] leaves it.
+    #[inline(always)]
+    fn new(kinematics: &Kinematics<T>, workspace: &Workspace<T>, joint: usize) -> Self {
+        let link = kinematics.link(joint + 1);
+        let (rotation, arm) = (link.rotation, link.translation - reference(kinematics));
+        let velocity = inside(&rotation, arm, workspace.velocity[joint + 1]);
+        let acceleration = inside(&rotation, arm, workspace.acceleration[joint + 1]);
+        let (omega, alpha) = (velocity.angular, acceleration.angular);
+        let d = acceleration.linear + omega.cross(velocity.linear);
+        Self { rotation, arm, omega, alpha, d }
+    }
+
+    /// Along a unit motion of all that carries the link. A link of mass m, first moment h and rotational inertia J asks for the force
+    /// m d + α × h + ω × (ω × h) and the moment h × d + J α + ω × J ω, which is linear in these.
+    #[inline(always)]
+    fn efforts(&self, unit: Motion<T>) -> Efforts<T> {
+        let Self { rotation, arm, omega, alpha, d } = *self;
+        let Motion { angular: e, linear: u } = inside(&rotation, arm, unit);
+        let of_moment = u.cross(alpha) + omega.cross(omega.cross(u)) + d.cross(e);
+        let (Vec3([ex, ey, ez]), Vec3([ax, ay, az])) = (e, alpha);
+        let (Vec3([wx, wy, wz]), Vec3([ox, oy, oz])) = (e.cross(omega), omega);
+        let of_inertia = Symmetric3 {
+            xx: ex * ax + wx * ox,
+            yy: ey * ay + wy * oy,
+            zz: ez * az + wz * oz,
+            xy: ex * ay + ey * ax + wx * oy + wy * ox,
+            xz: ex * az + ez * ax + wx * oz + wz * ox,
+            yz: ey * az + ez * ay + wy * oz + wz * oy,
+        };
+        Efforts { of_mass: u.dot(d), of_moment, of_inertia }
+    }
+}
+
+impl<T: Scalar> Efforts<T> {
+    /// Of an inertia in the link's frame.
+    #[inline(always)]
+    fn of(&self, inertia: &Inertia) -> T {
+        let Inertia { mass, first_moment, rotational: j } = Inertia::<T>::from_f64(inertia);
+        let Symmetric3 { xx, yy, zz, xy, xz, yz } = self.of_inertia;
+        let turned = j.xx * xx + j.yy * yy + j.zz * zz + j.xy * xy + j.xz * xz + j.yz * yz;
+        mass * self.of_mass + first_moment.dot(self.of_moment) + turned
+    }
+}
+
+/// A motion at the reference point, in the frame of a link whose origin is seen at `arm` from there.
+#[inline(always)]
+fn inside<T: Scalar>(rotation: &Rotation<T>, arm: Vec3<T>, motion: Motion<T>) -> Motion<T> {
+    let there = motion.shifted(arm);
+    Motion { angular: rotation.unrotate(there.angular), linear: rotation.unrotate(there.linear) }
+}
 
 /// Adds what the link of `joint` with each of these inertias in place of its own asks of the joints, ∂τ/∂I · ΔI, N·m or N, by the index of each
 /// velocity that is `wanted` and the number of the change: linear in the changes, without gravity where that is 0.
 ///
-/// `workspace` is that of [`rnea_derivatives_into`](super::rnea_derivatives_into), which was called last with it, in the same state. With the velocity
-/// (ω, v) and the acceleration (α, a) of the link (less gravity) in its own frame, in which ΔI stands still, and d = a + ω × v, a link of mass m,
-/// first moment h and rotational inertia J asks for the force m d + α × h + ω × (ω × h) and the moment h × d + J α + ω × J ω; along the unit motion
-/// (e, u) of a degree that carries it, that is m y + h·y_h + Σ J_ik (y_J)_ik with y of the motion alone (C. G. Atkeson, C. H. An & J. M. Hollerbach 1986).
+/// `workspace` is that of [`rnea_derivatives_into`](super::rnea_derivatives_into), which was called last with it, in the same state.
 pub(crate) fn add_inertia_efforts<'i>(
     model: &Model,
     kinematics: &Kinematics,
@@ -23,34 +155,15 @@ pub(crate) fn add_inertia_efforts<'i>(
     wanted: impl Fn(usize) -> bool,
     mut add: impl FnMut(usize, usize, f64),
 ) {
-    let link = kinematics.link(joint + 1);
-    let arm = link.translation - reference(kinematics);
-    let inside = |motion: Motion| {
-        let there = motion.shifted(arm);
-        let [angular, linear] = [there.angular, there.linear].map(|vector| link.rotation.unrotate(vector));
-        Motion { angular, linear }
-    };
     let Some(last) = model.degrees_of(joint).last() else { return };
-    let [velocity, acceleration] = [workspace.velocity[joint + 1], workspace.acceleration[joint + 1]].map(inside);
-    let (omega, alpha) = (velocity.angular, acceleration.angular);
-    let d = acceleration.linear + omega.cross(velocity.linear);
+    let motion = LinkMotion::new(kinematics, workspace, joint);
     for k in [last].into_iter().chain(joint::carriers(model, last)) {
         let index = model.degrees()[k].index;
         if !wanted(index) {
             continue;
         }
-        let Motion { angular: e, linear: u } = inside(workspace.axes.unit[k]);
-        let (of_mass, of_moment) = (u.dot(d), u.cross(alpha) + omega.cross(omega.cross(u)) + d.cross(e));
-        let (Vec3([ex, ey, ez]), Vec3([ax, ay, az])) = (e, alpha);
-        let (Vec3([wx, wy, wz]), Vec3([ox, oy, oz])) = (e.cross(omega), omega);
-        let [xx, yy, zz] = [ex * ax + wx * ox, ey * ay + wy * oy, ez * az + wz * oz];
-        let xy = ex * ay + ey * ax + wx * oy + wy * ox;
-        let xz = ex * az + ez * ax + wx * oz + wz * ox;
-        let yz = ey * az + ez * ay + wy * oz + wz * oy;
-        for (which, Inertia { mass, first_moment, rotational: j }) in changes.clone().enumerate() {
-            let turned = j.xx * xx + j.yy * yy + j.zz * zz + j.xy * xy + j.xz * xz + j.yz * yz;
-            add(index, which, mass * of_mass + first_moment.dot(of_moment) + turned);
-        }
+        let efforts = motion.efforts(workspace.axes.unit[k]);
+        changes.clone().enumerate().for_each(|(which, change)| add(index, which, efforts.of(change)));
     }
 }
 
@@ -81,7 +194,6 @@ mod tests {
     use super::*;
     use crate::dynamics::{RneaDerivatives, rnea, rnea_derivatives_into};
     use crate::model::{BodySpec, JointSpec, ModelBuilder, Parent};
-    use crate::spatial::Symmetric3;
 
     /// Two limbs on one body, a floating one among the joints.
     fn robot() -> Model {

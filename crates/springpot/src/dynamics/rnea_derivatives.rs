@@ -53,16 +53,28 @@ pub fn rnea_derivatives_into<T: Scalar>(
     workspace: &mut Workspace<T>,
     derivatives: &mut RneaDerivatives<T>,
 ) {
+    differentiate_all(model, kinematics, a, workspace, derivatives);
+    let RneaDerivatives { d_q, d_v, .. } = derivatives;
+    for pair in pairs {
+        add_pair_stiffness(model, kinematics, pair, workspace, d_q, d_v);
+    }
+}
+
+/// [`rnea_derivatives_into`] without pairs.
+#[inline(always)]
+pub(super) fn differentiate_all<T: Scalar>(
+    model: &Model,
+    kinematics: &Kinematics<T>,
+    a: &[T],
+    workspace: &mut Workspace<T>,
+    derivatives: &mut RneaDerivatives<T>,
+) {
     let n = model.nv();
     let RneaDerivatives { d_q, d_v, d_a } = &mut *derivatives;
     for matrix in [d_q, d_v, d_a] {
         matrix[..n * n].fill(T::ZERO);
     }
     differentiate(model, kinematics, a, workspace, derivatives, |_| true);
-    let RneaDerivatives { d_q, d_v, .. } = derivatives;
-    for pair in pairs {
-        add_pair_stiffness(model, kinematics, pair, workspace, d_q, d_v);
-    }
 }
 
 /// [`rnea_derivatives_into`] without pairs of a robot of which joints stand still but where `moves` says so, velocity by velocity: the rows of those that

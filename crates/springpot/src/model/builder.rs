@@ -100,10 +100,10 @@ impl ModelBuilder {
         let in_parent_link = parent.placement * offset;
         let frame = self.add_joint(parent.link, in_parent_link, joint, body);
         let model = &mut self.model;
+        let own = Inertia::from_central(spec.mass, spec.com.into(), Symmetric3::from_upper(spec.inertia));
+        model.masses.bodies.push(own);
         // What is fixed to the world has no part in the dynamics.
         if frame.link > 0 {
-            let central = Symmetric3::from_upper(spec.inertia);
-            let own = Inertia::from_central(spec.mass, spec.com.into(), central);
             model.masses.inertias[frame.link - 1] += own.to_parent(&frame.placement);
         }
         model.frames.push(frame);

@@ -225,6 +225,16 @@ impl Model {
         &self.names.bodies
     }
 
+    /// Their inertias, about the origins of their joints' frames and in their axes.
+    pub fn body_inertias(&self) -> &[Inertia] {
+        &self.masses.bodies
+    }
+
+    /// Their links, and where they are in these.
+    pub(crate) fn frames(&self) -> &[Frame] {
+        &self.frames
+    }
+
     /// Index of the body called `name`.
     pub fn body_index(&self, name: &str) -> Option<usize> {
         self.names.body_lookup.get(name).copied()
@@ -292,6 +302,7 @@ impl Model {
         assert_eq!((bodies.len(), armature.len()), (self.frames.len(), self.joint_count()), "bodies and joints");
         let mut model = self.clone();
         model.masses.inertias.fill(Inertia::ZERO);
+        model.masses.bodies = bodies.to_vec();
         for (frame, inertia) in self.frames.iter().zip(bodies).filter(|(frame, _)| frame.link > 0) {
             model.masses.inertias[frame.link - 1] += inertia.to_parent(&frame.placement);
         }

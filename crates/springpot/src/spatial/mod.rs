@@ -3,6 +3,7 @@
 //! Every type is a plain `Copy` array over one sealed [`Scalar`], `f64` by default.
 //! A [`Motion`] or [`Force`] is a pair of three-vectors taken at the origin of the frame it is expressed in.
 
+pub(crate) mod along;
 mod articulated;
 pub(crate) mod columns;
 pub(crate) mod dispatch;

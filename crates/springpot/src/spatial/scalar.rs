@@ -19,6 +19,13 @@ mod sealed {
         }
     }
 
+    impl<T: super::Scalar> Sealed for crate::spatial::along::Along<T> {
+        #[inline(always)]
+        fn in_columns(work: impl ColumnWork<Self>) {
+            work.run::<Self>();
+        }
+    }
+
     #[cfg(target_arch = "x86_64")]
     impl<R: crate::spatial::lanes::Register> Sealed for crate::spatial::lanes::Lanes<R> {
         #[inline(always)]

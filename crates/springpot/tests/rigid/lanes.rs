@@ -5,9 +5,10 @@ use crate::support::{build, case, close, config, largest, plain_case};
 use proptest::prelude::*;
 use springpot::dynamics::batch::{self, BatchError, BatchWorkspace};
 use springpot::dynamics::{
-    Kinematics, aba, aba_derivatives, christoffel, com, com_jacobian, coriolis, crba, frame_jacobian,
-    frame_jacobian_rate, gravity, kinetic_energy, mass_inverse, nonlinear_effects, pair, potential_energy, rnea,
-    rnea_derivatives,
+    BODY_NUMBERS, Kinematics, aba, aba_derivatives, centroidal_matrix, centroidal_matrix_rate, christoffel, com,
+    com_jacobian, coriolis, crba, frame_jacobian, frame_jacobian_rate, gravity, joint_torque_regressor, kinetic_energy,
+    mass_derivative, mass_inverse, nonlinear_effects, pair, potential_energy, rnea, rnea_derivatives,
+    rnea_second_derivatives,
 };
 use springpot::model::{Anchor, BodySpec, Frame, JointSpec, Model, Parent, Site};
 use springpot::spatial::{SimdError, SimdLevel};
@@ -79,6 +80,18 @@ impl<'a> States<'a> {
         one("frame jacobian rate", 6 * n, false, &mut |w, out| {
             batch::frame_jacobian_rate_into(m, w, frame, q, v, out).unwrap();
         });
+        one("centroidal matrix", 6 * n, false, &mut |w, out| batch::centroidal_matrix_into(m, w, q, out).unwrap());
+        one("centroidal matrix rate", 6 * n, false, &mut |w, out| {
+            batch::centroidal_matrix_rate_into(m, w, q, v, out).unwrap();
+        });
+        one("regressor", n * BODY_NUMBERS * m.body_names().len(), false, &mut |w, out| {
+            batch::joint_torque_regressor_into(m, w, q, v, a, out).unwrap();
+        });
+        one("mass derivative", n * n * n, false, &mut |w, out| batch::mass_derivative_into(m, w, q, out).unwrap());
+        let mut cubes: [Vec<f64>; 4] = std::array::from_fn(|_| room(n * n * n));
+        batch::rnea_second_derivatives_into(m, w, [q, v, a], cubes.each_mut().map(|cube| &mut cube[..])).unwrap();
+        let names = ["rnea by q, q", "rnea by v, q", "rnea by v, v", "rnea by a, q"];
+        all.extend(names.into_iter().zip(cubes).map(|(name, cube)| (name, cube, false)));
         let (mut first, mut second, mut third) = (room(n * n), room(n * n), room(n));
         batch::rnea_derivatives_into(m, w, q, v, a, &mut first, &mut second).unwrap();
         all.extend([("rnea by q", first.clone(), false), ("rnea by v", second.clone(), false)]);
@@ -111,6 +124,7 @@ impl<'a> States<'a> {
             let mass = crba(m, &k);
             conditions.push([n as f64 * largest(&mass) * largest(&inverse), largest(&inverse)]);
             let (by_rnea, by_aba) = (rnea_derivatives(m, q, v, a, &[]), aba_derivatives(m, q, v, a, &[]));
+            let by_two = rnea_second_derivatives(m, q, v, a);
             let placement = k.frame(frame);
             let (distance, gradient) = pair(m, &k, &ends[0], &ends[1]);
             let mut found: Vec<Found> = vec![
@@ -127,6 +141,14 @@ impl<'a> States<'a> {
                 ("potential energy", vec![potential_energy(m, &k)], false),
                 ("frame jacobian", frame_jacobian(m, &k, frame), false),
                 ("frame jacobian rate", frame_jacobian_rate(m, &k, frame), false),
+                ("centroidal matrix", centroidal_matrix(m, &k), false),
+                ("centroidal matrix rate", centroidal_matrix_rate(m, &k), false),
+                ("regressor", joint_torque_regressor(m, &k, a), false),
+                ("mass derivative", mass_derivative(m, &k), false),
+                ("rnea by q, q", by_two.d_q_q, false),
+                ("rnea by v, q", by_two.d_v_q, false),
+                ("rnea by v, v", by_two.d_v_v, false),
+                ("rnea by a, q", by_two.d_a_q, false),
                 ("rnea by q", by_rnea.d_q, false),
                 ("rnea by v", by_rnea.d_v, false),
                 ("aba by q", by_aba.d_q, true),

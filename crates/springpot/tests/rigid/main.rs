@@ -6,6 +6,7 @@ mod joints;
 mod lanes;
 mod long_chain;
 mod manifold;
+mod moments;
 mod oracle;
 mod pair;
 mod recursions;

@@ -34,13 +34,17 @@ pub use error::BatchError;
 pub use rooms::BatchWorkspace;
 
 use self::rooms::{Algorithm, Room, run};
+use super::rnea_second_derivatives::{SecondRoom, second_derivatives_into};
 use super::{
-    aba_derivatives_into as aba_derivatives_of_one, aba_into as aba_of_one, christoffel_into as christoffel_of_one,
-    com, com_jacobian_into as com_jacobian_of_one, coriolis_into as coriolis_of_one, crba_into as crba_of_one,
+    BODY_NUMBERS, RneaSecondDerivatives as AllSecondDerivatives, aba_derivatives_into as aba_derivatives_of_one,
+    aba_into as aba_of_one, centroidal_matrix_into as centroidal_matrix_of_one,
+    centroidal_matrix_rate_into as centroidal_matrix_rate_of_one, christoffel_into as christoffel_of_one, com,
+    com_jacobian_into as com_jacobian_of_one, coriolis_into as coriolis_of_one, crba_into as crba_of_one,
     frame_jacobian_at_into, frame_jacobian_rate_into as frame_jacobian_rate_of_one, gravity_into as gravity_of_one,
-    kinetic_energy, mass_inverse_into as mass_inverse_of_one, nonlinear_effects_into as nonlinear_effects_of_one,
-    pair_into as pair_of_one, potential_energy, rnea_derivatives_into as rnea_derivatives_of_one,
-    rnea_into as rnea_of_one,
+    joint_torque_regressor_into as joint_torque_regressor_of_one, kinetic_energy,
+    mass_derivative_into as mass_derivative_of_one, mass_inverse_into as mass_inverse_of_one,
+    nonlinear_effects_into as nonlinear_effects_of_one, pair_into as pair_of_one, potential_energy,
+    rnea_derivatives_into as rnea_derivatives_of_one, rnea_into as rnea_of_one,
 };
 use crate::model::{Frame, Model, Site};
 use crate::spatial::{Scalar, Vec3};
@@ -355,6 +359,146 @@ impl Algorithm<1, 1> for ComJacobian {
 pub fn com_jacobian_into(model: &Model, workspace: &mut BatchWorkspace, q: &[f64], jacobian: &mut [f64]) -> Done {
     let n = model.nv();
     run(&ComJacobian, model, workspace, [("q", q, model.nq())], [("jacobian", jacobian, 3 * n)])
+}
+
+struct CentroidalMatrix;
+
+impl Algorithm<1, 1> for CentroidalMatrix {
+    #[inline(always)]
+    fn work<'r, T: Scalar>(&self, model: &Model, room: &'r mut Room<T>, [q]: [&[T]; 1]) -> [&'r [T]; 1] {
+        room.kinematics.place(model, q);
+        centroidal_matrix_of_one(model, &room.kinematics, &mut room.workspace, &mut room.matrix);
+        [&room.matrix]
+    }
+}
+
+/// The centroidal momentum matrix, [`dynamics::centroidal_matrix_into`](super::centroidal_matrix_into): N × 6 × nv.
+///
+/// # Errors
+/// [`BatchError`].
+pub fn centroidal_matrix_into(model: &Model, workspace: &mut BatchWorkspace, q: &[f64], matrix: &mut [f64]) -> Done {
+    let n = model.nv();
+    run(&CentroidalMatrix, model, workspace, [("q", q, model.nq())], [("matrix", matrix, 6 * n)])
+}
+
+struct CentroidalMatrixRate;
+
+impl Algorithm<2, 1> for CentroidalMatrixRate {
+    #[inline(always)]
+    fn work<'r, T: Scalar>(&self, model: &Model, room: &'r mut Room<T>, [q, v]: [&[T]; 2]) -> [&'r [T]; 1] {
+        room.kinematics.set_moving(model, q, v);
+        centroidal_matrix_rate_of_one(model, &room.kinematics, &mut room.workspace, &mut room.matrix);
+        [&room.matrix]
+    }
+}
+
+/// Its time derivative, [`dynamics::centroidal_matrix_rate_into`](super::centroidal_matrix_rate_into): N × 6 × nv.
+///
+/// # Errors
+/// [`BatchError`].
+pub fn centroidal_matrix_rate_into(
+    model: &Model,
+    workspace: &mut BatchWorkspace,
+    q: &[f64],
+    v: &[f64],
+    rate: &mut [f64],
+) -> Done {
+    let n = model.nv();
+    let inputs = [("q", q, model.nq()), ("v", v, model.nv())];
+    run(&CentroidalMatrixRate, model, workspace, inputs, [("rate", rate, 6 * n)])
+}
+
+struct JointTorqueRegressor;
+
+impl Algorithm<3, 1> for JointTorqueRegressor {
+    #[inline(always)]
+    fn work<'r, T: Scalar>(&self, model: &Model, room: &'r mut Room<T>, [q, v, a]: [&[T]; 3]) -> [&'r [T]; 1] {
+        let Room { kinematics, workspace, cube, .. } = room;
+        cube.resize(model.nv() * BODY_NUMBERS * model.frames().len(), T::ZERO);
+        kinematics.set_moving(model, q, v);
+        joint_torque_regressor_of_one(model, kinematics, a, workspace, cube);
+        [cube]
+    }
+}
+
+/// The joint torque regressor, [`dynamics::joint_torque_regressor_into`](super::joint_torque_regressor_into): N × nv × 10·bodies.
+///
+/// # Errors
+/// [`BatchError`].
+pub fn joint_torque_regressor_into(
+    model: &Model,
+    workspace: &mut BatchWorkspace,
+    q: &[f64],
+    v: &[f64],
+    a: &[f64],
+    regressor: &mut [f64],
+) -> Done {
+    let width = model.nv() * BODY_NUMBERS * model.frames().len();
+    run(
+        &JointTorqueRegressor,
+        model,
+        workspace,
+        [("q", q, model.nq()), ("v", v, model.nv()), ("a", a, model.nv())],
+        [("regressor", regressor, width)],
+    )
+}
+
+struct MassDerivative;
+
+impl Algorithm<1, 1> for MassDerivative {
+    #[inline(always)]
+    fn work<'r, T: Scalar>(&self, model: &Model, room: &'r mut Room<T>, [q]: [&[T]; 1]) -> [&'r [T]; 1] {
+        let n = model.nv();
+        room.cube.resize(n * n * n, T::ZERO);
+        room.kinematics.place(model, q);
+        mass_derivative_of_one(model, &room.kinematics, &mut room.workspace, &mut room.cube);
+        [&room.cube]
+    }
+}
+
+/// ∂M/∂q, [`dynamics::mass_derivative_into`](super::mass_derivative_into): N × nv × nv × nv.
+///
+/// # Errors
+/// [`BatchError`].
+pub fn mass_derivative_into(model: &Model, workspace: &mut BatchWorkspace, q: &[f64], derivative: &mut [f64]) -> Done {
+    let n = model.nv();
+    run(&MassDerivative, model, workspace, [("q", q, model.nq())], [("derivative", derivative, n * n * n)])
+}
+
+struct RneaSecondDerivatives;
+
+impl Algorithm<3, 4> for RneaSecondDerivatives {
+    #[inline(always)]
+    fn work<'r, T: Scalar>(&self, model: &Model, room: &'r mut Room<T>, inputs: [&[T]; 3]) -> [&'r [T]; 4] {
+        if room.second.is_none() {
+            room.second = Some(Box::new((SecondRoom::new(model), AllSecondDerivatives::new(model))));
+        }
+        let (scratch, derivatives) = &mut **room.second.as_mut().expect("it was made");
+        second_derivatives_into(model, inputs, scratch, derivatives);
+        let AllSecondDerivatives { d_q_q, d_v_q, d_v_v, d_a_q } = derivatives;
+        [d_q_q, d_v_q, d_v_v, d_a_q]
+    }
+}
+
+/// Second derivatives of the inverse dynamics, [`dynamics::rnea_second_derivatives`](super::rnea_second_derivatives()): by q and q, v and q, v and v, a and
+/// q, N × nv × nv × nv each.
+///
+/// # Errors
+/// [`BatchError`].
+pub fn rnea_second_derivatives_into(
+    model: &Model,
+    workspace: &mut BatchWorkspace,
+    [q, v, a]: [&[f64]; 3],
+    [d_q_q, d_v_q, d_v_v, d_a_q]: [&mut [f64]; 4],
+) -> Done {
+    let n = model.nv().pow(3);
+    run(
+        &RneaSecondDerivatives,
+        model,
+        workspace,
+        [("q", q, model.nq()), ("v", v, model.nv()), ("a", a, model.nv())],
+        [("d_q_q", d_q_q, n), ("d_v_q", d_v_q, n), ("d_v_v", d_v_v, n), ("d_a_q", d_a_q, n)],
+    )
 }
 
 struct KineticEnergy;

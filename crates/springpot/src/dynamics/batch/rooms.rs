@@ -1,7 +1,8 @@
 //! What batches are worked out in, and the loop over their states.
 
 use super::error::BatchError;
-use crate::dynamics::{AbaDerivatives, Kinematics, RneaDerivatives, Workspace};
+use crate::dynamics::rnea_second_derivatives::SecondRoom;
+use crate::dynamics::{AbaDerivatives, Kinematics, RneaDerivatives, RneaSecondDerivatives, Workspace};
 use crate::model::Model;
 use crate::spatial::columns::Rows;
 use crate::spatial::dispatch::Task;
@@ -43,10 +44,12 @@ pub(super) struct Room<T> {
     pub(super) matrix: Vec<T>,
     /// nv × nv.
     pub(super) square: Vec<T>,
-    /// nv × nv × nv, made when it is first asked for.
+    /// nv × nv × nv or a regressor, made when it is first asked for.
     pub(super) cube: Vec<T>,
     /// nv or 3, whichever is more.
     pub(super) vector: Vec<T>,
+    /// Made when it is first asked for.
+    pub(super) second: Option<Box<(SecondRoom<T>, RneaSecondDerivatives<T>)>>,
     pub(super) scalar: [T; 1],
     pub(super) more: [T; 9],
 }
@@ -71,6 +74,7 @@ impl<T: Rows> Scratch<T> {
             square: zeros(n * n),
             cube: Vec::new(),
             vector: zeros(n.max(3)),
+            second: None,
             scalar: [T::ZERO],
             more: [T::ZERO; 9],
         };

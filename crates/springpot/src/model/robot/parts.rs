@@ -36,6 +36,8 @@ pub(in crate::model) struct DegreeTree {
 #[derive(Debug, Clone, Default)]
 pub(in crate::model) struct Masses {
     pub(in crate::model) inertias: Vec<Inertia>,
+    /// Of the described bodies, about the origins of their joints' frames and in their axes.
+    pub(in crate::model) bodies: Vec<Inertia>,
     /// Of all that a joint carries, kg.
     pub(in crate::model) subtrees: Vec<f64>,
     pub(in crate::model) may_be_indefinite: bool,
