@@ -13,6 +13,7 @@
 
 mod aba;
 mod aba_derivatives;
+mod abreast;
 pub mod batch;
 mod body_coriolis;
 mod cholesky;
@@ -36,6 +37,7 @@ mod workspace;
 
 pub use aba::{aba, aba_into};
 pub use aba_derivatives::{AbaDerivatives, aba_derivatives, aba_derivatives_into};
+pub(crate) use abreast::{Abreast, Found, Sought};
 pub use cholesky::{cholesky_into, cholesky_solve_into, inverse_from_cholesky_into, mass_inverse, mass_inverse_into};
 pub use christoffel::{christoffel, christoffel_into};
 pub use com::{com, com_jacobian, com_jacobian_into};
@@ -59,8 +61,6 @@ pub use jacobian::{
     point_jacobian_into, point_jacobian_rate, point_jacobian_rate_into,
 };
 pub use kinematics::Kinematics;
-pub(crate) use regressor::{add_gravity_efforts, add_inertia_efforts};
 pub use rnea::{nonlinear_effects, nonlinear_effects_into, rnea, rnea_at_into, rnea_into};
-pub(crate) use rnea_derivatives::rnea_derivatives_of_moving;
 pub use rnea_derivatives::{RneaDerivatives, rnea_derivatives, rnea_derivatives_into};
 pub use workspace::Workspace;

@@ -49,10 +49,8 @@ pub(super) fn motions<T: Scalar>(
             let degree = &model.degrees()[k];
             let unit = joint::unit_motion(model, degree, link, arm);
             if !moves(degree.index) && joint::is_shift(degree) {
-                let along =
-                    |motion: Motion<T>| Motion { angular: Vec3::ZERO, linear: motion.angular.cross(unit.linear) };
-                let (rate, second) = (along(carrier), along(pushed));
-                let turned = Motion { angular: Vec3::ZERO, linear: carrier.angular.cross(rate.linear) };
+                let (rate, second) = (swept(carrier, unit), swept(pushed, unit));
+                let turned = swept(carrier, rate);
                 (ws.axes.unit[k], ws.axes.rate[k], ws.axes.second_rate[k]) = (unit, rate, second + turned);
                 continue;
             }
@@ -80,4 +78,10 @@ pub(super) fn motions<T: Scalar>(
         ws.body_coriolis[j] = BodyCoriolis::new(&inertia, velocity, momentum);
         ws.composite[j] = inertia;
     }
+}
+
+/// What turns `shift` along: ω × u.
+#[inline(always)]
+fn swept<T: Scalar>(motion: Motion<T>, shift: Motion<T>) -> Motion<T> {
+    Motion { angular: Vec3::ZERO, linear: motion.angular.cross(shift.linear) }
 }

@@ -7,9 +7,9 @@ use crate::system::sensitivity::{Seed, Sensitivity};
 #[derive(Debug, Default)]
 pub(super) struct Inertias {
     /// By joint of the extended robot, with parameter and change.
-    pub(super) links: Vec<(usize, Vec<(usize, Inertia)>)>,
+    links: Vec<(usize, Vec<(usize, Inertia)>)>,
     pub(super) rotors: Vec<(usize, usize, f64)>,
-    pub(super) fields: Vec<(usize, [f64; 3])>,
+    fields: Vec<(usize, [f64; 3])>,
 }
 
 impl Inertias {
@@ -35,5 +35,17 @@ impl Inertias {
             }
         }
         own
+    }
+
+    /// Changes of links, joint by joint, and of gravity.
+    pub(super) fn changes(&self) -> (Vec<(usize, Vec<Inertia>)>, Vec<[f64; 3]>) {
+        let links = self.links.iter().map(|(joint, changes)| (*joint, changes.iter().map(|(_, own)| *own).collect()));
+        (links.collect(), self.fields.iter().map(|(_, own)| *own).collect())
+    }
+
+    /// Which parameter each of these is of, one after the other.
+    pub(super) fn parameters(&self) -> impl Iterator<Item = usize> + '_ {
+        let links = self.links.iter().flat_map(|(_, changes)| changes.iter().map(|(p, _)| *p));
+        links.chain(self.fields.iter().map(|(p, _)| *p))
     }
 }

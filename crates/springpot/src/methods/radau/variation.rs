@@ -90,12 +90,14 @@ impl RadauStep {
         variation.share_forces(equations);
         let free = variation.of_run(equations.free());
         let elements = variation.elements.len();
-        let mut force = vec![0.0; elements];
-        for (i, stage) in self.stages.iter().enumerate() {
-            force.iter_mut().enumerate().for_each(|(e, force)| *force = variation.response(equations, e).force[i]);
-            let t = if i + 1 == STAGES { t_end } else { self.origin.t + RADAU_NODES[i] * h };
-            variation.see(equations, i + 1, stage.node(t), &force);
-            variation.steer(i + 1, equations, &force);
+        let mut force = vec![0.0; STAGES * elements];
+        for (place, force) in force.iter_mut().enumerate() {
+            *force = variation.response(equations, place % elements).force[place / elements];
+        }
+        let times = [self.origin.t + RADAU_NODES[0] * h, self.origin.t + RADAU_NODES[1] * h, t_end];
+        variation.see_stages(equations, std::array::from_fn(|i| self.stages[i].node(times[i])), &force);
+        for i in 0..STAGES {
+            variation.steer(i + 1, equations, &force[i * elements..(i + 1) * elements]);
         }
         if !self.model.is_one_degree() && !self.look_at_turns(equations, variation, h) {
             return false;
