@@ -29,6 +29,7 @@ use crate::observe::Quantity;
 use crate::system::sensitivity::{Seed, Sensitivity, SensitivityError};
 use crate::system::{Motion, System};
 pub(crate) use adjoint::{Backwards, Endings, Entries, Recording, Starts};
+use adjoint::{Narrow, SolvedStep};
 use energies::Works;
 pub(crate) use found::Found;
 use inertias::Inertias;
@@ -92,6 +93,9 @@ pub(crate) struct Room {
     pub(crate) solve: Solve,
     /// Right-hand sides of a step, side by side.
     pub(crate) right: Vec<f64>,
+    /// The step at hand, where no column is followed through it, and how much the last one kept.
+    solved: Option<Box<SolvedStep>>,
+    kept: usize,
 }
 
 /// How often what changes of temperatures is found together with what changes of the motion.
@@ -124,6 +128,8 @@ pub(crate) struct ElementVariation {
     told: Vec<f64>,
     /// What its leaves are there, where rows tell of them.
     leaves: Vec<f64>,
+    /// Its law by columns of its own, for steps that are gone back through by their own equations.
+    narrow: Option<Box<Narrow>>,
 }
 
 /// One node.
@@ -239,6 +245,7 @@ impl Variation {
                 row: [(); 3].map(|()| vec![0.0; count]),
                 told: Vec::new(),
                 leaves: Vec::new(),
+                narrow: None,
             }
         };
         let seeds = by.parameters.iter().enumerate().flat_map(|(p, own)| own.seeds.iter().map(move |seed| (p, seed)));
@@ -268,6 +275,8 @@ impl Variation {
                 stands,
                 solve: Solve::default(),
                 right: Vec::new(),
+                solved: None,
+                kept: 0,
             },
             saltation: Saltation::new(count),
             works: Works::new(by, extended.elements.len(), has_fixed_steps),
