@@ -4,8 +4,8 @@
 //! up; those of ones are ∂m/∂s of the state at the cut before.
 
 use super::tape::{Entries, Entry, PIECES, Part};
+use super::through::Through;
 use crate::fractional::{MemoryAdjoint, OfStep};
-use crate::linalg::Lu;
 use crate::system::sensitivity::Share;
 
 /// How much a quantity of a row counts: row, quantity, number, slope.
@@ -29,9 +29,8 @@ pub(crate) struct Backwards {
     /// Room for what counts of columns: of all, and of a row.
     by: Vec<f64>,
     of_row: Vec<f64>,
-    /// The factors of a step, and a block of nothing.
-    pub(super) solve: Lu,
-    pub(super) none: Vec<f64>,
+    /// Room to go through steps in.
+    pub(super) room: Through,
 }
 
 impl Backwards {
@@ -55,8 +54,7 @@ impl Backwards {
             counts: vec![false; count],
             by: Vec::new(),
             of_row: Vec::new(),
-            solve: Lu::default(),
-            none: vec![0.0; count],
+            room: Through::default(),
         }
     }
 

@@ -118,7 +118,8 @@ impl Narrow {
 #[derive(Debug)]
 pub(crate) struct SolvedStep {
     pub(super) plan: Arc<Plan>,
-    pub(super) starts: Starts,
+    /// How many numbers the state has in front of it.
+    pub(super) state: usize,
     pub(super) h: f64,
     /// When signals at its end are those there.
     t_end: f64,
@@ -137,7 +138,6 @@ impl SolvedStep {
         let matrix = STAGES * STAGES * self.plan.velocities * self.plan.velocities;
         size_of::<Self>()
             + size_of_val(&self.numbers[..])
-            + size_of_val(&self.starts.columns[..])
             + size_of_val(&self.rows[..])
             + matrix * size_of::<f64>()
             + self.memories.iter().map(MemoryOfStep::bytes).sum::<usize>()
@@ -279,7 +279,7 @@ impl Variation {
         }
         self.room.solved = Some(Box::new(SolvedStep {
             plan: plan.clone(),
-            starts: starts.clone(),
+            state: starts.numbers,
             h,
             t_end,
             transposed,
