@@ -191,7 +191,6 @@ impl Variation {
             Motion::Given(_) => model.neutral(),
         };
         let inertias = Inertias::of(by);
-        let (links, fields) = inertias.changes();
         let line = |(e, measure): (usize, &Measure)| match measure {
             Measure::Line(line) => Some((e, [line.from, line.to])),
             _ => None,
@@ -200,7 +199,7 @@ impl Variation {
             extended.elements.iter().map(|element| &element.measure).enumerate().filter_map(line).collect();
         let moves = (0..model.nv()).map(|k| own_v.contains(&k)).collect();
         let stands = control.is_some() || lines.len() < extended.elements.len();
-        let abreast = Abreast::new(model, Sought { moves, links, fields, lines });
+        let abreast = Abreast::new(model, Sought { moves, links: inertias.links(), fields: inertias.fields(), lines });
         let efforts = abreast.sought.changes() * model.nv();
         let zeros = || vec![0.0; model.nv() * count];
         let node = || NodeVariation {

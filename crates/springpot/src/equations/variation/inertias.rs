@@ -37,13 +37,18 @@ impl Inertias {
         own
     }
 
-    /// Changes of links, joint by joint, and of gravity.
-    pub(super) fn changes(&self) -> (Vec<(usize, Vec<Inertia>)>, Vec<[f64; 3]>) {
-        let links = self.links.iter().map(|(joint, changes)| (*joint, changes.iter().map(|(_, own)| *own).collect()));
-        (links.collect(), self.fields.iter().map(|(_, own)| *own).collect())
+    /// Changes of links, joint by joint.
+    pub(super) fn links(&self) -> Vec<(usize, Vec<Inertia>)> {
+        let own = |changes: &[(usize, Inertia)]| changes.iter().map(|(_, change)| *change).collect();
+        self.links.iter().map(|(joint, changes)| (*joint, own(changes))).collect()
     }
 
-    /// Which parameter each of these is of, one after the other.
+    /// Changes of gravity.
+    pub(super) fn fields(&self) -> Vec<[f64; 3]> {
+        self.fields.iter().map(|(_, change)| *change).collect()
+    }
+
+    /// Which parameter each of these is of, one after the other, those of links first.
     pub(super) fn parameters(&self) -> impl Iterator<Item = usize> + '_ {
         let links = self.links.iter().flat_map(|(_, changes)| changes.iter().map(|(p, _)| *p));
         links.chain(self.fields.iter().map(|(p, _)| *p))
