@@ -207,6 +207,17 @@ impl Driver {
         if theta.is_none() && self.recorder.recording.as_ref().is_some_and(|recording| recording.took_step()) {
             self.cut()?;
         }
+        let Recorder { variation: Some(variation), recording: Some(recording), .. } = &mut self.recorder else {
+            return Ok(());
+        };
+        if theta.is_some_and(|theta| recording.note_row(variation, number, theta)) {
+            return Ok(());
+        }
+        if variation.is_unsolved() {
+            // What memories are asked for by the step is none of the row's.
+            let within = theta.zip(self.step_at_hand()).map(|(theta, step)| (theta, step.size));
+            self.solver.stepper_mut().vary_within(&mut self.recorder, within);
+        }
         let Recorder { equations, variation: Some(variation), recording: Some(recording), .. } = &mut self.recorder
         else {
             return Ok(());

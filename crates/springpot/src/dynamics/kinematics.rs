@@ -152,6 +152,7 @@ impl<T: Scalar> Kinematics<T> {
 
     /// [`Self::update_velocity`] of a robot of which joints stand still, where they stood when this was made, but where `moves` says so, velocity by
     /// velocity.
+    #[inline(always)]
     pub(crate) fn update_velocity_of_moving(&mut self, model: &Model, q: &[T], v: &[T], moves: &[bool]) {
         self.level = Level::Velocity;
         let (n, q, v) = (model.joint_count(), &q[..model.nq()], &v[..model.nv()]);

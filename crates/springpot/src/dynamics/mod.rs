@@ -13,6 +13,7 @@
 
 mod aba;
 mod aba_derivatives;
+mod abreast;
 pub mod batch;
 mod body_coriolis;
 mod centroidal;
@@ -39,6 +40,7 @@ mod workspace;
 
 pub use aba::{aba, aba_into};
 pub use aba_derivatives::{AbaDerivatives, aba_derivatives, aba_derivatives_into};
+pub(crate) use abreast::{Abreast, Found, Sought};
 pub use centroidal::{centroidal_matrix, centroidal_matrix_into, centroidal_matrix_rate, centroidal_matrix_rate_into};
 pub use cholesky::{cholesky_into, cholesky_solve_into, inverse_from_cholesky_into, mass_inverse, mass_inverse_into};
 pub use christoffel::{christoffel, christoffel_into};
@@ -65,9 +67,7 @@ pub use jacobian::{
 pub use kinematics::Kinematics;
 pub use mass_derivative::{mass_derivative, mass_derivative_into};
 pub use regressor::{BODY_NUMBERS, body_numbers, joint_torque_regressor, joint_torque_regressor_into};
-pub(crate) use regressor::{add_gravity_efforts, add_inertia_efforts};
 pub use rnea::{nonlinear_effects, nonlinear_effects_into, rnea, rnea_at_into, rnea_into};
-pub(crate) use rnea_derivatives::rnea_derivatives_of_moving;
 pub use rnea_derivatives::{RneaDerivatives, rnea_derivatives, rnea_derivatives_into};
 pub use rnea_second_derivatives::{RneaSecondDerivatives, rnea_second_derivatives};
 pub use workspace::Workspace;

@@ -63,8 +63,8 @@ pub(super) fn motions<T: Scalar>(
             let degree = &model.degrees()[k];
             let unit = joint::unit_motion(model, degree, link, arm);
             if !moves(degree.index) && joint::is_shift(degree) {
-                let (rate, second) = (turned_by(carrier, unit), turned_by(pushed, unit));
-                let turned = Motion { angular: Vec3::ZERO, linear: carrier.angular.cross(rate.linear) };
+                let (rate, second) = (swept(carrier, unit), swept(pushed, unit));
+                let turned = swept(carrier, rate);
                 (ws.axes.unit[k], ws.axes.rate[k], ws.axes.second_rate[k]) = (unit, rate, second + turned);
                 continue;
             }
@@ -94,8 +94,8 @@ pub(super) fn motions<T: Scalar>(
     }
 }
 
-/// How a unit shift changes under a turning frame.
+/// What turns `shift` along: ω × u.
 #[inline(always)]
-fn turned_by<T: Scalar>(motion: Motion<T>, unit: Motion<T>) -> Motion<T> {
-    Motion { angular: Vec3::ZERO, linear: motion.angular.cross(unit.linear) }
+fn swept<T: Scalar>(motion: Motion<T>, shift: Motion<T>) -> Motion<T> {
+    Motion { angular: Vec3::ZERO, linear: motion.angular.cross(shift.linear) }
 }

@@ -5,7 +5,7 @@ use super::kinematics::Kinematics;
 use super::moments::{motions, reference};
 use super::workspace::Workspace;
 use crate::model::Model;
-use crate::spatial::{Inertia, Motion, Rotation, Scalar, Symmetric3, Vec3};
+use crate::spatial::{Inertia, Motion, Placement, Scalar, Symmetric3, Vec3};
 
 /// Numbers of a body in the order of [`joint_torque_regressor_into`].
 pub const BODY_NUMBERS: usize = 10;
@@ -33,18 +33,12 @@ pub fn joint_torque_regressor_into<T: Scalar>(
     motions(model, kinematics, Some(&a[..n]), workspace, |_| true);
     for (body, frame) in model.frames().iter().enumerate() {
         let Some(joint) = frame.link().checked_sub(1) else { continue };
-        let motion = LinkMotion::new(kinematics, workspace, joint);
         let mut units = [Inertia::ZERO; BODY_NUMBERS];
         for which in 0..BODY_NUMBERS {
             units[which] = unit_number(which).to_parent(frame.placement());
         }
-        for k in joint::path_to_world(model, frame.link()) {
-            let efforts = motion.efforts(workspace.axes.unit[k]);
-            let first = model.degrees()[k].index * width + body * BODY_NUMBERS;
-            for which in 0..BODY_NUMBERS {
-                regressor[first + which] += efforts.of(&units[which]);
-            }
-        }
+        let columns = (&mut *regressor, width, body * BODY_NUMBERS);
+        add_inertia_efforts(model, kinematics, workspace, (joint, &units), |_| true, columns);
     }
 }
 
@@ -73,109 +67,70 @@ fn unit_number(which: usize) -> Inertia {
     Inertia { mass, first_moment: Vec3([x, y, z]), rotational: Symmetric3 { xx, yy, zz, xy, xz, yz } }
 }
 
-/// How a link moves, in its own frame.
-struct LinkMotion<T> {
-    rotation: Rotation<T>,
-    arm: Vec3<T>,
-    omega: Vec3<T>,
-    alpha: Vec3<T>,
-    /// a + ω × v, less gravity.
-    d: Vec3<T>,
-}
-
-/// What a joint is asked for by the numbers of a link.
-struct Efforts<T> {
-    of_mass: T,
-    of_moment: Vec3<T>,
-    of_inertia: Symmetric3<T>,
-}
-
-impl<T: Scalar> LinkMotion<T> {
-    /// `workspace` as [`motions`] leaves it.
-    #[inline(always)]
-    fn new(kinematics: &Kinematics<T>, workspace: &Workspace<T>, joint: usize) -> Self {
-        let link = kinematics.link(joint + 1);
-        let (rotation, arm) = (link.rotation, link.translation - reference(kinematics));
-        let velocity = inside(&rotation, arm, workspace.velocity[joint + 1]);
-        let acceleration = inside(&rotation, arm, workspace.acceleration[joint + 1]);
-        let (omega, alpha) = (velocity.angular, acceleration.angular);
-        let d = acceleration.linear + omega.cross(velocity.linear);
-        Self { rotation, arm, omega, alpha, d }
-    }
-
-    /// Along a unit motion of all that carries the link. A link of mass m, first moment h and rotational inertia J asks for the force
-    /// m d + α × h + ω × (ω × h) and the moment h × d + J α + ω × J ω, which is linear in these.
-    #[inline(always)]
-    fn efforts(&self, unit: Motion<T>) -> Efforts<T> {
-        let Self { rotation, arm, omega, alpha, d } = *self;
-        let Motion { angular: e, linear: u } = inside(&rotation, arm, unit);
-        let of_moment = u.cross(alpha) + omega.cross(omega.cross(u)) + d.cross(e);
-        let (Vec3([ex, ey, ez]), Vec3([ax, ay, az])) = (e, alpha);
-        let (Vec3([wx, wy, wz]), Vec3([ox, oy, oz])) = (e.cross(omega), omega);
-        let of_inertia = Symmetric3 {
-            xx: ex * ax + wx * ox,
-            yy: ey * ay + wy * oy,
-            zz: ez * az + wz * oz,
-            xy: ex * ay + ey * ax + wx * oy + wy * ox,
-            xz: ex * az + ez * ax + wx * oz + wz * ox,
-            yz: ey * az + ez * ay + wy * oz + wz * oy,
-        };
-        Efforts { of_mass: u.dot(d), of_moment, of_inertia }
-    }
-}
-
-impl<T: Scalar> Efforts<T> {
-    /// Of an inertia in the link's frame.
-    #[inline(always)]
-    fn of(&self, inertia: &Inertia) -> T {
-        let Inertia { mass, first_moment, rotational: j } = Inertia::<T>::from_f64(inertia);
-        let Symmetric3 { xx, yy, zz, xy, xz, yz } = self.of_inertia;
-        let turned = j.xx * xx + j.yy * yy + j.zz * zz + j.xy * xy + j.xz * xz + j.yz * yz;
-        mass * self.of_mass + first_moment.dot(self.of_moment) + turned
-    }
-}
-
-/// A motion at the reference point, in the frame of a link whose origin is seen at `arm` from there.
-#[inline(always)]
-fn inside<T: Scalar>(rotation: &Rotation<T>, arm: Vec3<T>, motion: Motion<T>) -> Motion<T> {
-    let there = motion.shifted(arm);
-    Motion { angular: rotation.unrotate(there.angular), linear: rotation.unrotate(there.linear) }
-}
-
-/// Adds what the link of `joint` with each of these inertias in place of its own asks of the joints, ∂τ/∂I · ΔI, N·m or N, by the index of each
-/// velocity that is `wanted` and the number of the change: linear in the changes, without gravity where that is 0.
+/// Adds what the link of `joint` with each of these inertias in place of its own asks of the joints, ∂τ/∂I · ΔI, N·m or N, to the columns from `first`
+/// on of `efforts`, which has a row of `count` for each velocity, where that is `wanted`: linear in the changes, without gravity where that is 0.
 ///
-/// `workspace` is that of [`rnea_derivatives_into`](super::rnea_derivatives_into), which was called last with it, in the same state.
-pub(crate) fn add_inertia_efforts<'i>(
+/// `workspace` is that of [`rnea_derivatives_into`](super::rnea_derivatives_into), which was called last with it, in the same state. With the velocity
+/// (ω, v) and the acceleration (α, a) of the link (less gravity) in its own frame, in which ΔI stands still, and d = a + ω × v, a link of mass m,
+/// first moment h and rotational inertia J asks for the force m d + α × h + ω × (ω × h) and the moment h × d + J α + ω × J ω; along the unit motion
+/// (e, u) of a degree that carries it, that is m y + h·y_h + Σ J_ik (y_J)_ik with y of the motion alone (C. G. Atkeson, C. H. An & J. M. Hollerbach 1986).
+#[inline(always)]
+pub(crate) fn add_inertia_efforts<T: Scalar>(
     model: &Model,
-    kinematics: &Kinematics,
-    workspace: &Workspace,
-    joint: usize,
-    changes: impl Iterator<Item = &'i Inertia> + Clone,
+    kinematics: &Kinematics<T>,
+    workspace: &Workspace<T>,
+    (joint, changes): (usize, &[Inertia]),
     wanted: impl Fn(usize) -> bool,
-    mut add: impl FnMut(usize, usize, f64),
+    (efforts, count, first): (&mut [T], usize, usize),
 ) {
+    let link = kinematics.link(joint + 1);
+    let arm = link.translation - reference(kinematics);
     let Some(last) = model.degrees_of(joint).last() else { return };
-    let motion = LinkMotion::new(kinematics, workspace, joint);
+    let velocity = inside(link, arm, workspace.velocity[joint + 1]);
+    let acceleration = inside(link, arm, workspace.acceleration[joint + 1]);
+    let (omega, alpha) = (velocity.angular, acceleration.angular);
+    let d = acceleration.linear + omega.cross(velocity.linear);
     for k in [last].into_iter().chain(joint::carriers(model, last)) {
         let index = model.degrees()[k].index;
         if !wanted(index) {
             continue;
         }
-        let efforts = motion.efforts(workspace.axes.unit[k]);
-        changes.clone().enumerate().for_each(|(which, change)| add(index, which, efforts.of(change)));
+        let Motion { angular: e, linear: u } = inside(link, arm, workspace.axes.unit[k]);
+        let (of_mass, of_moment) = (u.dot(d), u.cross(alpha) + omega.cross(omega.cross(u)) + d.cross(e));
+        let (Vec3([ex, ey, ez]), Vec3([ax, ay, az])) = (e, alpha);
+        let (Vec3([wx, wy, wz]), Vec3([ox, oy, oz])) = (e.cross(omega), omega);
+        let [xx, yy, zz] = [ex * ax + wx * ox, ey * ay + wy * oy, ez * az + wz * oz];
+        let xy = ex * ay + ey * ax + wx * oy + wy * ox;
+        let xz = ex * az + ez * ax + wx * oz + wz * ox;
+        let yz = ey * az + ez * ay + wy * oz + wz * oy;
+        for (effort, change) in efforts[index * count + first..].iter_mut().zip(changes) {
+            let Inertia { mass, first_moment, rotational: j } = Inertia::from_f64(change);
+            let turned = j.xx * xx + j.yy * yy + j.zz * zz + j.xy * xy + j.xz * xz + j.yz * yz;
+            *effort += mass * of_mass + first_moment.dot(of_moment) + turned;
+        }
     }
+}
+
+/// A motion about the reference point, seen from `arm` away in the axes of a link.
+#[inline(always)]
+fn inside<T: Scalar>(link: &Placement<T>, arm: Vec3<T>, motion: Motion<T>) -> Motion<T> {
+    let there = motion.shifted(arm);
+    Motion { angular: link.rotation.unrotate(there.angular), linear: link.rotation.unrotate(there.linear) }
 }
 
 /// Adds what a field of gravity that changes by each of these, m/s², world axes, asks of the joints, as [`add_inertia_efforts`] does: all that a joint
 /// carries, of mass m and first moment h, takes −(m u + e × h) · Δg along the unit motion (e, u).
-pub(crate) fn add_gravity_efforts<'g>(
+#[inline(always)]
+pub(crate) fn add_gravity_efforts<T: Scalar>(
     model: &Model,
-    workspace: &Workspace,
-    changes: impl Iterator<Item = &'g [f64; 3]> + Clone,
+    workspace: &Workspace<T>,
+    changes: &[[f64; 3]],
     wanted: impl Fn(usize) -> bool,
-    mut add: impl FnMut(usize, usize, f64),
+    (efforts, count, first): (&mut [T], usize, usize),
 ) {
+    if changes.is_empty() {
+        return;
+    }
     for joint in 0..model.joint_count() {
         for k in model.degrees_of(joint) {
             let index = model.degrees()[k].index;
@@ -184,7 +139,9 @@ pub(crate) fn add_gravity_efforts<'g>(
             }
             let (Inertia { mass, first_moment, .. }, unit) = (workspace.composite[joint], workspace.axes.unit[k]);
             let lifted = unit.linear * mass + unit.angular.cross(first_moment);
-            changes.clone().enumerate().for_each(|(which, change)| add(index, which, -lifted.dot(Vec3(*change))));
+            for (effort, change) in efforts[index * count + first..].iter_mut().zip(changes) {
+                *effort -= lifted.dot(Vec3::from_f64(Vec3(*change)));
+            }
         }
     }
 }
@@ -248,19 +205,20 @@ mod tests {
             changes[model.body_names().iter().position(|name| **name == format!("b{joint}")).unwrap()] = change;
             let moved = model.with_inertias(&changes, &vec![0.0; model.joint_count()]);
             let expected = rnea(&moved, &q, &v, &a, &[]);
-            let mut found = vec![0.0; n];
-            let links = [Inertia::ZERO, *moved.link_inertia(joint)];
-            let add = |k: usize, which: usize, value: f64| found[k] += which as f64 * value;
-            add_inertia_efforts(&model, &kinematics, &workspace, joint, links.iter(), |_| true, add);
-            for (found, expected) in found.iter().zip(&expected) {
-                assert!((found - expected).abs() < 1e-12, "{joint}: {found} {expected}");
+            let mut found = vec![0.0; 3 * n];
+            let changes = [Inertia::ZERO, *moved.link_inertia(joint)];
+            let efforts = (&mut found[..], 3, 1);
+            add_inertia_efforts(&model, &kinematics, &workspace, (joint, &changes), |_| true, efforts);
+            for (found, expected) in found.chunks_exact(3).zip(&expected) {
+                assert!((found[2] - expected).abs() < 1e-12, "{joint}: {found:?} {expected}");
+                assert!(found[0] == 0.0 && found[1] == 0.0);
             }
         }
         let zero = vec![0.0; n];
         let field = [0.4, -0.3, 0.7];
         let expected = rnea(&model.with_gravity(field), &q, &zero, &zero, &[]);
         let mut found = zero;
-        add_gravity_efforts(&model, &workspace, [field].iter(), |_| true, |k, _, value| found[k] += value);
+        add_gravity_efforts(&model, &workspace, &[field], |_| true, (&mut found, 1, 0));
         for (found, expected) in found.iter().zip(&expected) {
             assert!((found - expected).abs() < 1e-12, "gravity: {found} {expected}");
         }

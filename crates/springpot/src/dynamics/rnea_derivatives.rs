@@ -79,18 +79,21 @@ pub(super) fn differentiate_all<T: Scalar>(
 
 /// [`rnea_derivatives_into`] without pairs of a robot of which joints stand still but where `moves` says so, velocity by velocity: the rows of those that
 /// move, and of the columns of others what ∂τ/∂q has there; other entries of these rows are 0, other rows stay.
-pub(crate) fn rnea_derivatives_of_moving(
+#[inline(always)]
+pub(crate) fn rnea_derivatives_of_moving<T: Scalar>(
     model: &Model,
-    kinematics: &Kinematics,
-    a: &[f64],
+    kinematics: &Kinematics<T>,
+    a: &[T],
     moves: &[bool],
-    workspace: &mut Workspace,
-    derivatives: &mut RneaDerivatives,
+    workspace: &mut Workspace<T>,
+    derivatives: &mut RneaDerivatives<T>,
 ) {
     let n = model.nv();
     let RneaDerivatives { d_q, d_v, d_a } = &mut *derivatives;
     for row in (0..n).filter(|row| moves[*row]) {
-        [&mut *d_q, d_v, d_a].into_iter().for_each(|matrix| matrix[row * n..(row + 1) * n].fill(0.0));
+        for matrix in [&mut *d_q, &mut *d_v, &mut *d_a] {
+            matrix[row * n..(row + 1) * n].fill(T::ZERO);
+        }
     }
     differentiate(model, kinematics, a, workspace, derivatives, |velocity| moves[velocity]);
 }

@@ -9,6 +9,7 @@ mod one_node;
 mod past;
 mod rows;
 mod saltation;
+mod seen;
 mod singular;
 mod sizes;
 mod state;
@@ -16,28 +17,26 @@ mod state;
 use super::assembly::Equations;
 use super::control::ControlVariation;
 use super::node::Node;
-use super::resistance::add_tangents;
 use super::solve::Solve;
 use crate::collocation::STAGES;
-use crate::dynamics::{
-    Kinematics, RneaDerivatives, Workspace, add_gravity_efforts, add_inertia_efforts, rnea_derivatives_of_moving,
-};
-use crate::elements::{MemoryRange, Reading};
+use crate::dynamics::{Abreast, Kinematics, RneaDerivatives, Sought, Workspace};
+use crate::elements::{Measure, MemoryRange};
 use crate::law::past::Begun;
 use crate::law::variation::{LawVariation, ObservationVariation, PointVariation, StepVariation};
 use crate::law::{Network, Response, Start};
 use crate::linalg::columns::add;
-use crate::model::{FrictionLaw, Model};
 use crate::observe::Quantity;
 use crate::system::sensitivity::{Seed, Sensitivity, SensitivityError};
 use crate::system::{Motion, System};
 pub(crate) use adjoint::{Backwards, Endings, Entries, Recording, Starts};
+use adjoint::{Narrow, SolvedStep};
 use energies::Works;
 pub(crate) use found::Found;
 use inertias::Inertias;
 use one_node::OneSize;
 pub(crate) use one_node::{STAGE, Told};
 use saltation::Saltation;
+use seen::felt;
 use singular::Singular;
 use sizes::Sizes;
 pub(crate) use sizes::{StepErrors, TANGENTS};
@@ -51,10 +50,8 @@ pub(crate) struct Variation {
     pub(super) by: Arc<Sensitivity>,
     pub(super) system: Arc<System>,
     coordinates: Coordinates,
-    /// Of every velocity of the run, which of the extended robot it is.
+    /// Of every velocity of the run, which of the extended robot it is; the others stand for places and stay 0.
     pub(super) own_v: Vec<usize>,
-    /// Whether each velocity of the extended robot is one of the run; the others stand for places and stay 0.
-    moves: Vec<bool>,
     pub(crate) elements: Vec<ElementVariation>,
     /// What moves geometry, for good: velocity of the extended robot, parameter, by how much.
     placed: Vec<(usize, usize, f64)>,
@@ -89,9 +86,16 @@ struct Coordinates {
 #[derive(Debug)]
 pub(crate) struct Room {
     workspace: Workspace,
+    /// Where nodes are seen side by side, with what is asked of the robot.
+    abreast: Abreast,
+    /// Whether kinematics of the nodes are asked for beside that.
+    stands: bool,
     pub(crate) solve: Solve,
     /// Right-hand sides of a step, side by side.
     pub(crate) right: Vec<f64>,
+    /// The step at hand, where no column is followed through it, and how much the last one kept.
+    solved: Option<Box<SolvedStep>>,
+    kept: usize,
 }
 
 /// How often what changes of temperatures is found together with what changes of the motion.
@@ -124,6 +128,8 @@ pub(crate) struct ElementVariation {
     told: Vec<f64>,
     /// What its leaves are there, where rows tell of them.
     leaves: Vec<f64>,
+    /// Its law by columns of its own, for steps that are gone back through by their own equations.
+    narrow: Option<Box<Narrow>>,
 }
 
 /// One node.
@@ -149,6 +155,8 @@ pub(crate) struct NodeVariation {
     pub(crate) a: Vec<f64>,
     /// Of the equations of motion where the motion stays.
     explicit: Vec<f64>,
+    /// What changed inertias and gravity ask of the velocities.
+    efforts: Vec<f64>,
 }
 
 impl Variation {
@@ -182,6 +190,17 @@ impl Variation {
             Motion::Forward(forward) => forward.q.clone(),
             Motion::Given(_) => model.neutral(),
         };
+        let inertias = Inertias::of(by);
+        let line = |(e, measure): (usize, &Measure)| match measure {
+            Measure::Line(line) => Some((e, [line.from, line.to])),
+            _ => None,
+        };
+        let lines: Vec<_> =
+            extended.elements.iter().map(|element| &element.measure).enumerate().filter_map(line).collect();
+        let moves = (0..model.nv()).map(|k| own_v.contains(&k)).collect();
+        let stands = control.is_some() || lines.len() < extended.elements.len();
+        let abreast = Abreast::new(model, Sought { moves, links: inertias.links(), fields: inertias.fields(), lines });
+        let efforts = abreast.sought.changes() * model.nv();
         let zeros = || vec![0.0; model.nv() * count];
         let node = || NodeVariation {
             t: 0.0,
@@ -197,6 +216,7 @@ impl Variation {
             v: zeros(),
             a: zeros(),
             explicit: zeros(),
+            efforts: vec![0.0; efforts],
         };
         let element = |(e, inputs): (usize, usize)| {
             let mut rest = vec![0.0; count];
@@ -224,6 +244,7 @@ impl Variation {
                 row: [(); 3].map(|()| vec![0.0; count]),
                 told: Vec::new(),
                 leaves: Vec::new(),
+                narrow: None,
             }
         };
         let seeds = by.parameters.iter().enumerate().flat_map(|(p, own)| own.seeds.iter().map(move |seed| (p, seed)));
@@ -237,19 +258,25 @@ impl Variation {
             by.parameters.iter().enumerate().flat_map(|(p, own)| own.seeds.iter().enumerate().map(move |k| (p, k)));
         let pushes = seeds.filter(|(_, (_, seed))| is_push(seed)).map(|(p, (which, _))| (p, which)).collect();
         let elements = extended.elements.iter().map(|element| element.inputs.len()).enumerate().map(element).collect();
-        let moves = (0..model.nv()).map(|k| own_v.contains(&k)).collect();
         Ok(Self {
             coordinates: Coordinates { own: own_q, values: start.clone() },
             own_v,
-            moves,
             elements,
             placed,
-            inertias: Inertias::of(by),
+            inertias,
             pushes,
             nodes: std::array::from_fn(|_| node()),
             sizes: Sizes::new(by, model.nv(), extended.elements.len()),
             singular: Singular::new(extended.elements.len(), model.nv(), count),
-            room: Room { workspace: Workspace::new(model), solve: Solve::default(), right: Vec::new() },
+            room: Room {
+                workspace: Workspace::new(model),
+                abreast,
+                stands,
+                solve: Solve::default(),
+                right: Vec::new(),
+                solved: None,
+                kept: 0,
+            },
             saltation: Saltation::new(count),
             works: Works::new(by, extended.elements.len(), has_fixed_steps),
             by: by.clone(),
@@ -428,34 +455,6 @@ impl Variation {
         self.room.solve = solve;
     }
 
-    /// Looks at node `i` of the step, where the run is at `at`: what its elements measure, and their inputs.
-    pub(crate) fn look(&mut self, i: usize, at: Node) {
-        let Self { system, coordinates: Coordinates { own, values: q }, own_v, moves, nodes, room, .. } = self;
-        let (model, node) = (&system.model, &mut nodes[i]);
-        own.iter().zip(at.q).for_each(|(&k, value)| q[k] = *value);
-        for (&k, (v, a)) in own_v.iter().zip(at.v.iter().zip(at.a)) {
-            (node.v_now[k], node.a_now[k]) = (*v, *a);
-        }
-        node.t = at.t;
-        node.q_now.copy_from_slice(q);
-        node.kinematics.update_velocity_of_moving(model, q, &node.v_now, moves);
-        let n = model.nv();
-        let measured = node.gradients.iter_mut().zip(&mut node.hessians).zip(&mut node.readings);
-        for (element, (([gradient, bend], kept), told)) in system.elements.iter().zip(measured) {
-            let mut reading = Reading::default();
-            element.measure.read_into(model, &node.kinematics, gradient, &mut reading);
-            *told = [reading.coordinate, reading.rate];
-            element.measure.hessian_of_moving(model, &node.kinematics, moves, &mut room.workspace, kept);
-            // y'_b = Σ_a ∂(∂y/∂q_a)/∂q_b v_a.
-            bend.fill(0.0);
-            for &k in own_v.iter() {
-                let (line, v) = (&kept[k * n..(k + 1) * n], node.v_now[k]);
-                bend.iter_mut().zip(line).for_each(|(bend, h)| *bend += h * v);
-            }
-        }
-        self.look_at_inputs(i, at.t);
-    }
-
     /// What changes of the inputs at node `i`, at time t, which follow from time alone or are held.
     pub(super) fn look_at_inputs(&mut self, i: usize, t: f64) {
         let Self { by, system, elements, saltation: Saltation { held, .. }, .. } = self;
@@ -498,67 +497,6 @@ impl Variation {
                 values[place..place + count].copy_from_slice(by);
             }
         }
-    }
-
-    /// Looks at node `i`, where the elements pull with `force`, and sees the slopes there, and what changes where the motion stays.
-    pub(crate) fn see(&mut self, equations: &Equations, i: usize, at: Node, force: &[f64]) {
-        self.look(i, at);
-        let Self { by, system, own_v, moves, nodes, room, saltation, inertias, pushes, one_size, .. } = self;
-        let workspace = &mut room.workspace;
-        let Saltation { held, .. } = saltation;
-        let (model, node, count) = (&system.model, &mut nodes[i], by.parameters.len());
-        let (slopes, n) = (&mut node.slopes, model.nv());
-        rnea_derivatives_of_moving(model, &node.kinematics, &node.a_now, moves, workspace, slopes);
-        for (force, hessian) in force.iter().zip(&node.hessians).filter(|(force, _)| **force != 0.0) {
-            for &row in own_v.iter() {
-                let line = row * n..(row + 1) * n;
-                let bent = hessian[line.clone()].iter();
-                slopes.d_q[line].iter_mut().zip(bent).for_each(|(slope, bent)| *slope += force * bent);
-            }
-        }
-        add_tangents(system, &node.v_now, &mut slopes.d_v);
-        own_v.iter().for_each(|k| node.explicit[k * count..(k + 1) * count].fill(0.0));
-        for (velocity, by) in held.drives() {
-            let row = own_v[velocity] * count;
-            node.explicit[row..row + count].iter_mut().zip(by).for_each(|(sum, by)| *sum -= by);
-        }
-        for &(p, which) in pushes.iter() {
-            let mut add = |k: usize, value: f64| node.explicit[k * count + p] += value;
-            match &by.parameters[p].seeds[which] {
-                Seed::Drive { velocity, by } if held.drive(*velocity).is_none() => {
-                    add(own_v[*velocity], -by.value(at.t));
-                }
-                Seed::Damping { joint, by } => {
-                    let (k, ratio, speed) = felt(model, *joint, &node.v_now);
-                    add(k, by * ratio * speed);
-                }
-                Seed::Friction { joint, by } => {
-                    let (k, ratio, speed) = felt(model, *joint, &node.v_now);
-                    match model.friction_laws()[*joint] {
-                        FrictionLaw::Smooth { speed: width } => add(k, by * ratio * (speed / width).tanh()),
-                        FrictionLaw::Sticking => {
-                            let own = own_v.iter().position(|own| *own == k);
-                            let direction = |own: usize| match one_size {
-                                Some(one_size) => one_size.sliding(i, own, at.v[own]),
-                                None => equations.sliding(own, at.v[own]),
-                            };
-                            add(k, by * ratio.abs() * own.map_or(0.0, direction));
-                        }
-                    }
-                }
-                _ => {}
-            }
-        }
-        let Inertias { links, rotors, fields } = inertias;
-        let explicit = &mut node.explicit;
-        for (joint, changes) in links {
-            let add = |k: usize, which: usize, value: f64| explicit[k * count + changes[which].0] += value;
-            let inertias = changes.iter().map(|(_, inertia)| inertia);
-            add_inertia_efforts(model, &node.kinematics, workspace, *joint, inertias, |k| moves[k], add);
-        }
-        rotors.iter().for_each(|(p, k, rotor)| explicit[k * count + p] += rotor * node.a_now[*k]);
-        let add = |k: usize, which: usize, value: f64| explicit[k * count + fields[which].0] += value;
-        add_gravity_efforts(model, workspace, fields.iter().map(|(_, change)| change), |k| moves[k], add);
     }
 
     /// Follows the motion at the nodes, as they have it, with all that is told of it.
@@ -794,12 +732,6 @@ fn of_nodes<'a>(
     let step = (nodes + 1) * count;
     let inputs = inputs.each_ref().map(|blocks| &blocks[..blocks.len() / (ROW + 1) * (nodes + 1)]);
     StepVariation { count, stroke: &stroke[..step], rate: &rate[..step], inputs, passed: None }
-}
-
-/// Velocity, ratio and speed of a joint of the extended robot.
-fn felt(model: &Model, joint: usize, v: &[f64]) -> (usize, f64, f64) {
-    let (k, ratio) = (model.v_range(joint).start, model.followed(joint).map_or(1.0, |(_, ratio, _)| ratio));
-    (k, ratio, ratio * v[k])
 }
 
 /// What no derivative is known of.

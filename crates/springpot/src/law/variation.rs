@@ -5,7 +5,7 @@ use super::state::{State, StateSize};
 use super::step::{InputValue, Point, Step};
 use crate::collocation::MAX_NODES;
 use crate::dual::Dual;
-use crate::fractional::MemoryTangent;
+use crate::fractional::{MemoryTangent, PortColumns};
 use crate::linalg::columns;
 use serde::{Deserialize, Serialize};
 
@@ -169,6 +169,18 @@ impl LawVariation {
         let blocks = self.variables.chunks_exact_mut(self.count.max(1));
         for (block, (before, after)) in blocks.zip(before.iter().zip(after)) {
             block.iter_mut().zip(moved).for_each(|(own, moved)| *own += (before - after) * moved);
+        }
+    }
+
+    /// The same by other columns, of which each moves its numbers as one of these does or not at all; the past of its memory k is told by `ports(k)`.
+    pub(crate) fn narrowed(&self, of: &[Option<usize>], ports: impl Fn(usize) -> PortColumns) -> Self {
+        let block = |own: &[f64]| of.iter().map(|p| p.map_or(0.0, |p| own[p])).collect::<Vec<_>>();
+        Self {
+            count: of.len(),
+            numbers: self.numbers.chunks_exact(self.count.max(1)).flat_map(block).collect(),
+            memories: self.memories.iter().enumerate().map(|(k, memory)| memory.narrowed(of, ports(k))).collect(),
+            variables: vec![0.0; self.variables.len() / self.count.max(1) * of.len()],
+            at_start: None,
         }
     }
 

@@ -98,10 +98,17 @@ impl Lu {
 
     /// Solves for `count` right-hand sides at once, which stand side by side: row k of `x` has component k of all of them.
     pub(crate) fn solve_rows(&mut self, x: &mut [f64], count: usize) {
+        let mut rows = std::mem::take(&mut self.rows);
+        self.solve_rows_within(&mut rows, x, count);
+        self.rows = rows;
+    }
+
+    /// The same in room of the caller's.
+    pub(crate) fn solve_rows_within(&self, [given, found]: &mut [Vec<Block>; 2], x: &mut [f64], count: usize) {
         if self.n >= WIDE {
-            return self.wide.solve_rows(x, count);
+            return self.wide.solve_rows_within([given, found], x, count);
         }
-        let Self { n, entries, order, rows: [given, found], .. } = self;
+        let Self { n, entries, order, .. } = self;
         for rows in [&mut *given, &mut *found] {
             rows.resize(*n, [0.0; LANES]);
         }

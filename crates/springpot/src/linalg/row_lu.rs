@@ -20,8 +20,9 @@ pub(crate) struct RowLu<const PARTS: usize> {
     /// Inverses of the pivots.
     inverse: Vec<[f64; PARTS]>,
     order: Vec<usize>,
-    /// Room for a right-hand side.
+    /// Room for a right-hand side, and for blocks of several.
     y: Vec<Block>,
+    rows: [Vec<Block>; 2],
 }
 
 impl<const PARTS: usize> RowLu<PARTS> {
@@ -129,16 +130,21 @@ impl<const PARTS: usize> RowLu<PARTS> {
 impl RowLu<1> {
     /// Solves for `count` right-hand sides at once, which stand side by side: row k of `x` has component k of all of them.
     pub(crate) fn solve_rows(&mut self, x: &mut [f64], count: usize) {
-        let mut rows = std::mem::take(&mut self.y);
-        rows.clear();
-        rows.resize(2 * self.n, [0.0; LANES]);
-        let (given, found) = rows.split_at_mut(self.n);
+        let mut rows = std::mem::take(&mut self.rows);
+        self.solve_rows_within(rows.each_mut(), x, count);
+        self.rows = rows;
+    }
+
+    /// The same in room of the caller's.
+    pub(super) fn solve_rows_within(&self, [given, found]: [&mut Vec<Block>; 2], x: &mut [f64], count: usize) {
+        for rows in [&mut *given, &mut *found] {
+            rows.resize(self.n, [0.0; LANES]);
+        }
         for first in (0..count).step_by(LANES) {
             take_block(x, count, first, given);
             dispatch!(Level::new(), simd => self.substitute_block(simd, given, found));
             put_block(found, x, count, first);
         }
-        self.y = rows;
     }
 
     #[inline(always)]

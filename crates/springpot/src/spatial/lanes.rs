@@ -1,6 +1,7 @@
 //! Several states side by side in one register.
 //!
-//! Products and sums are joined into one rounding wherever [`Scalar::times_plus`] says that they may be.
+//! Products and sums are joined into one rounding wherever [`Scalar::times_plus`] says that they may be, but in lanes that keep apart what one
+//! state keeps apart.
 
 #![expect(
     unsafe_code,
@@ -256,31 +257,33 @@ fn first_of_8(count: usize) -> u8 {
     ((1u16 << count.min(8)) - 1) as u8
 }
 
-/// Several states side by side.
+/// Several states side by side; `JOINS`: products and sums are joined into one rounding, else lanes have the bits of one state.
 #[derive(Clone, Copy)]
 #[repr(transparent)]
-pub(crate) struct Lanes<R>(R);
+pub(crate) struct Lanes<R, const JOINS: bool = true>(R);
 
 /// Four states.
 pub(crate) type Lanes4 = Lanes<__m256d>;
 /// Eight states.
 pub(crate) type Lanes8 = Lanes<__m512d>;
+/// Four states, each with the bits that it has alone.
+pub(crate) type Apart4 = Lanes<__m256d, false>;
 
 /// The numbers of all lanes, one after the other.
 #[inline(always)]
-fn flat<R: Register>(lanes: &[Lanes<R>]) -> &[f64] {
+fn flat<R: Register, const JOINS: bool>(lanes: &[Lanes<R, JOINS>]) -> &[f64] {
     // SAFETY: lanes are nothing but their register, and that is nothing but its numbers.
     unsafe { std::slice::from_raw_parts(lanes.as_ptr().cast(), lanes.len() * R::WIDTH) }
 }
 
 /// As [`flat`].
 #[inline(always)]
-fn flat_mut<R: Register>(lanes: &mut [Lanes<R>]) -> &mut [f64] {
+fn flat_mut<R: Register, const JOINS: bool>(lanes: &mut [Lanes<R, JOINS>]) -> &mut [f64] {
     // SAFETY: as above.
     unsafe { std::slice::from_raw_parts_mut(lanes.as_mut_ptr().cast(), lanes.len() * R::WIDTH) }
 }
 
-impl<R: Register> Rows for Lanes<R> {
+impl<R: Register, const JOINS: bool> Rows for Lanes<R, JOINS> {
     const COUNT: usize = R::WIDTH;
 
     #[inline(always)]
@@ -329,7 +332,7 @@ impl<R: Register> Rows for Lanes<R> {
 
 /// Rows that are shorter than a register.
 #[inline(always)]
-fn read_some<R: Register>(rows: &[f64], count: usize, into: &mut [Lanes<R>]) {
+fn read_some<R: Register, const JOINS: bool>(rows: &[f64], count: usize, into: &mut [Lanes<R, JOINS>]) {
     let width = into.len();
     let mut block = [R::ZERO; 8];
     for lane in 0..R::WIDTH {
@@ -343,7 +346,7 @@ fn read_some<R: Register>(rows: &[f64], count: usize, into: &mut [Lanes<R>]) {
 
 /// As [`read_some`], back.
 #[inline(always)]
-fn write_some<R: Register>(values: &[Lanes<R>], count: usize, rows: &mut [f64]) {
+fn write_some<R: Register, const JOINS: bool>(values: &[Lanes<R, JOINS>], count: usize, rows: &mut [f64]) {
     let width = values.len();
     let mut block = [R::ZERO; 8];
     for (register, value) in block.iter_mut().zip(values) {
@@ -355,7 +358,7 @@ fn write_some<R: Register>(values: &[Lanes<R>], count: usize, rows: &mut [f64]) 
     }
 }
 
-impl<R: Register> Scalar for Lanes<R> {
+impl<R: Register, const JOINS: bool> Scalar for Lanes<R, JOINS> {
     const ZERO: Self = Self(R::ZERO);
     const ONE: Self = Self(R::ONE);
 
@@ -383,11 +386,13 @@ impl<R: Register> Scalar for Lanes<R> {
 
     #[inline(always)]
     fn times_plus(self, factor: Self, term: Self) -> Self {
-        Self(self.0.times_plus(factor.0, term.0))
+        // As of one state.
+        let joins = JOINS || cfg!(target_feature = "fma");
+        if joins { Self(self.0.times_plus(factor.0, term.0)) } else { self * factor + term }
     }
 }
 
-impl<R: Register> Add for Lanes<R> {
+impl<R: Register, const JOINS: bool> Add for Lanes<R, JOINS> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
@@ -395,7 +400,7 @@ impl<R: Register> Add for Lanes<R> {
     }
 }
 
-impl<R: Register> Sub for Lanes<R> {
+impl<R: Register, const JOINS: bool> Sub for Lanes<R, JOINS> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
@@ -403,7 +408,7 @@ impl<R: Register> Sub for Lanes<R> {
     }
 }
 
-impl<R: Register> Mul for Lanes<R> {
+impl<R: Register, const JOINS: bool> Mul for Lanes<R, JOINS> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
@@ -411,7 +416,7 @@ impl<R: Register> Mul for Lanes<R> {
     }
 }
 
-impl<R: Register> Div for Lanes<R> {
+impl<R: Register, const JOINS: bool> Div for Lanes<R, JOINS> {
     type Output = Self;
     #[inline(always)]
     fn div(self, other: Self) -> Self {
@@ -419,7 +424,7 @@ impl<R: Register> Div for Lanes<R> {
     }
 }
 
-impl<R: Register> Neg for Lanes<R> {
+impl<R: Register, const JOINS: bool> Neg for Lanes<R, JOINS> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
@@ -427,40 +432,40 @@ impl<R: Register> Neg for Lanes<R> {
     }
 }
 
-impl<R: Register> AddAssign for Lanes<R> {
+impl<R: Register, const JOINS: bool> AddAssign for Lanes<R, JOINS> {
     #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
-impl<R: Register> SubAssign for Lanes<R> {
+impl<R: Register, const JOINS: bool> SubAssign for Lanes<R, JOINS> {
     #[inline(always)]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
 }
 
-impl<R: Register> Default for Lanes<R> {
+impl<R: Register, const JOINS: bool> Default for Lanes<R, JOINS> {
     fn default() -> Self {
         Self(R::ZERO)
     }
 }
 
-impl<R: Register> PartialEq for Lanes<R> {
+impl<R: Register, const JOINS: bool> PartialEq for Lanes<R, JOINS> {
     fn eq(&self, other: &Self) -> bool {
         flat(&[*self]) == flat(&[*other])
     }
 }
 
-impl<R: Register> fmt::Debug for Lanes<R> {
+impl<R: Register, const JOINS: bool> fmt::Debug for Lanes<R, JOINS> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         flat(&[*self]).fmt(f)
     }
 }
 
 /// One state in whose rows several columns are worked on at once, without joining products and sums: the same bits as one by one.
-impl<R: Register> Columns<f64> for Lanes<R> {
+impl<R: Register, const JOINS: bool> Columns<f64> for Lanes<R, JOINS> {
     const WIDTH: usize = R::WIDTH;
 
     #[inline(always)]

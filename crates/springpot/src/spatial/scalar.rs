@@ -27,7 +27,7 @@ mod sealed {
     }
 
     #[cfg(target_arch = "x86_64")]
-    impl<R: crate::spatial::lanes::Register> Sealed for crate::spatial::lanes::Lanes<R> {
+    impl<R: crate::spatial::lanes::Register, const JOINS: bool> Sealed for crate::spatial::lanes::Lanes<R, JOINS> {
         #[inline(always)]
         fn in_columns(work: impl ColumnWork<Self>) {
             work.run::<Self>();

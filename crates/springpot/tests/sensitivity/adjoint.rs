@@ -51,8 +51,8 @@ fn forward(system: &System, settings: &Settings, by: &Sensitivity) -> Forward {
     Forward { quantities, rows: plain, sums }
 }
 
-/// The scenario's own derivatives, forwards and backwards.
-fn compare(what: &str, text: &str) -> Result<(), RunError> {
+/// The scenario's own derivatives, forwards and backwards; how much is kept to go back, bytes.
+fn compare(what: &str, text: &str) -> Result<usize, RunError> {
     let plan = cases(text).plan(0).unwrap();
     let mut system = plan.system();
     let by = Sensitivity { control: false, ..Sensitivity::clone(system.sensitivity.as_ref().expect("some asked for")) };
@@ -91,7 +91,7 @@ fn compare(what: &str, text: &str) -> Result<(), RunError> {
         }
     }
     assert!(tape.bytes() > 0);
-    Ok(())
+    Ok(tape.bytes())
 }
 
 const ARM: &str = r#"
@@ -193,6 +193,22 @@ fn an_arm_with_each_kind_of_law() {
     for (what, law, by) in laws {
         compare(what, &arm(law, by, MOTION)).unwrap();
     }
+}
+
+/// Steps of motion and memories alone keep their equations, whichever memories they are and whatever kinks are between them; with an event to be watched
+/// for they keep maps of columns.
+#[test]
+fn through_the_equations_of_steps() {
+    let torque = MOTION.replace("0.5*cos(4*t)", "0.5*cos(4*t) + f*step(t - 0.21)");
+    let law = "network = \"parallel(spring(k), springpot(c, alpha), springpot(d, beta))\"\nparameters = { k = 100, c = 60, alpha = 0.7, d = 20, beta = 0.3 }";
+    let by = ["k", "c", "alpha", "d", "beta"].map(|name| format!("element.strut.{name}"));
+    let by: Vec<&str> = by.iter().map(String::as_str).chain(["constants.f"]).collect();
+    let text = format!("[constants]\nf = 0.7\n{}", arm(law, &by, &torque));
+    let (from, to) = (text.find("of = [").unwrap(), text.rfind(']').unwrap());
+    let text = format!("{}of = [\"q.*\", \"v.*\", \"a.*\"{}\n", &text[..from], &text[to..]);
+    let never = "\n[[event]]\nname = \"never\"\nwhen = \"q.q1 - 50\"\n";
+    let [own, columns] = ["", never].map(|event| compare("rows of motion", &format!("{text}{event}")).unwrap());
+    assert!(own != columns, "{own} bytes either way");
 }
 
 /// A torque that switches at a given time, a spring from a table, a springpot whose coefficient follows an input: steps end on changes that no parameter moves.

@@ -216,10 +216,15 @@ impl Recorder {
         let ends = [0, STAGES].map(|k| &self.evaluations[k]).map(|end| (end.t, &end.q[..], &end.v[..]));
         self.equations.take_ends(cx, ends)?;
         let leaning = self.equations.lean_again();
-        if let Some(variation) = &mut self.variation {
-            variation.commit(&self.equations);
+        match (&mut self.variation, &mut self.recording) {
+            (Some(variation), Some(recording)) if variation.is_unsolved() => {
+                recording.take_step(variation, &self.equations);
+            }
+            (variation, recording) => {
+                variation.iter_mut().for_each(|variation| variation.commit(&self.equations));
+                recording.iter_mut().for_each(|recording| recording.note(true));
+            }
         }
-        self.recording.iter_mut().for_each(|recording| recording.note(true));
         self.equations.stand(leaning);
         let (actuators, joints) = self.work_until(1.0);
         let end = &self.evaluations[STAGES];

@@ -75,34 +75,43 @@ impl<'a, T: Scalar> Line<'a, T> {
         mut visit: impl FnMut(usize, usize, T),
     ) {
         let (degrees, u, inverse) = (model.degrees(), self.direction, T::ONE / self.length);
-        let stretched = |a: usize, b: usize| {
-            let along = u.dot(columns[a]) * u.dot(columns[b]);
-            (columns[a].dot(columns[b]) - along) * inverse
-        };
-        let turn = |k: usize| joint::angular_column(&degrees[k], kinematics.link(degrees[k].link));
         for site in [self.from, self.to] {
             for hi in joint::path_to(model, site.link(), self.common) {
                 for lo in joint::inwards(model, hi + 1, model.last_degree(self.common)).filter(|lo| wanted(*lo, hi)) {
-                    let both = stretched(lo, hi);
+                    let both = stretched(u, [columns[lo], columns[hi]], inverse);
                     let shifts = joint::is_shift(&degrees[lo]);
-                    let turned = if shifts { T::ZERO } else { u.dot(turn(lo).cross(columns[hi])) };
+                    let turned = if shifts { T::ZERO } else { u.dot(turn(model, kinematics, lo).cross(columns[hi])) };
                     visit(hi, lo, both + turned);
                     if lo == hi {
                         continue;
                     }
                     // Degrees of one joint move with one another.
                     let one_joint = degrees[lo].link == degrees[hi].link;
-                    let turned = if one_joint { u.dot(turn(hi).cross(columns[lo])) } else { turned };
+                    let turned = if one_joint { u.dot(turn(model, kinematics, hi).cross(columns[lo])) } else { turned };
                     visit(lo, hi, both + turned);
                 }
             }
         }
         for a in joint::path_to(model, self.from.link(), self.common) {
             for b in joint::path_to(model, self.to.link(), self.common).filter(|b| wanted(a, *b)) {
-                let both = stretched(a, b);
+                let both = stretched(u, [columns[a], columns[b]], inverse);
                 visit(a, b, both);
                 visit(b, a, both);
             }
         }
     }
+}
+
+/// (t_a·t_b − (u·t_a)(u·t_b))/l.
+#[inline(always)]
+fn stretched<T: Scalar>(u: Vec3<T>, [a, b]: [Vec3<T>; 2], inverse: T) -> T {
+    let along = u.dot(a) * u.dot(b);
+    (a.dot(b) - along) * inverse
+}
+
+/// Om_k of the link that degree k moves.
+#[inline(always)]
+fn turn<T: Scalar>(model: &Model, kinematics: &Kinematics<T>, k: usize) -> Vec3<T> {
+    let degree = &model.degrees()[k];
+    joint::angular_column(degree, kinematics.link(degree.link))
 }

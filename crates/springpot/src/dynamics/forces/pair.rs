@@ -156,11 +156,18 @@ pub(crate) fn pair_hessian_of_moving<T: Scalar>(
     }
     let line = Line::new(model, kinematics, from, to);
     line.fill_columns(model, kinematics, &mut workspace.columns);
-    line.second_derivatives(model, kinematics, &workspace.columns, wanted, |a, b, entry| {
-        if moves(degrees[a].index) {
-            hessian[degrees[a].index * n + degrees[b].index] += entry;
-        }
-    });
+    line.second_derivatives(
+        model,
+        kinematics,
+        &workspace.columns,
+        wanted,
+        #[inline(always)]
+        |a, b, entry| {
+            if moves(degrees[a].index) {
+                hessian[degrees[a].index * n + degrees[b].index] += entry;
+            }
+        },
+    );
 }
 
 /// [`pair_hessian_into`], allocating.

@@ -9,10 +9,10 @@ impl Variation {
     /// Sees what follows from the state at node `i`, which was seen, where the elements pull with `force`.
     pub(crate) fn steer(&mut self, i: usize, equations: &Equations, force: &[f64]) {
         let (Some(control), Some(run)) = (&mut self.control, &equations.control) else { return };
-        let NodeVariation { t, kinematics, slopes, v_now, a_now, readings, hessians, explicit, .. } =
+        let NodeVariation { t, kinematics, slopes, q_now, v_now, a_now, readings, hessians, explicit, .. } =
             &mut self.nodes[i];
         let rests = |e: usize| &self.elements[e].rest[..];
-        let at = Place { t: *t, motion: [&self.coordinates.values, v_now, a_now], kinematics, readings, rests: &rests };
+        let at = Place { t: *t, motion: [q_now, v_now, a_now], kinematics, readings, rests: &rests };
         // A force that is held follows from nothing.
         let (n, count) = (v_now.len(), explicit.len() / v_now.len().max(1));
         let rows: Vec<usize> = self.saltation.held.drives().map(|(k, _)| self.own_v[k]).collect();
@@ -103,7 +103,7 @@ impl Variation {
         }
         let node = &self.nodes[i];
         let rests = |e: usize| &self.elements[e].rest[..];
-        let motion = [&self.coordinates.values[..], &node.v_now, &node.a_now];
+        let motion = [&node.q_now[..], &node.v_now, &node.a_now];
         let at = Place { t: node.t, motion, kinematics: &node.kinematics, readings: &node.readings, rests: &rests };
         let found = control.foresee(i, run, at, [&node.q, &node.v]);
         let t = node.t;
@@ -130,7 +130,7 @@ impl OfSamples for Variation {
     fn say(&self, target: Target, shown: &dyn Shown) -> Vec<f64> {
         let (node, Some(control)) = (&self.nodes[ROW], &self.control) else { return Vec::new() };
         let rests = |e: usize| &self.elements[e].rest[..];
-        let motion = [&self.coordinates.values[..], &node.v_now, &node.a_now];
+        let motion = [&node.q_now[..], &node.v_now, &node.a_now];
         let at = Place { t: node.t, motion, kinematics: &node.kinematics, readings: &node.readings, rests: &rests };
         let forces = |e: usize| (shown.force(e), self.elements[e].row[0].clone());
         control.say(target, at, &forces, [&node.q, &node.v, &node.a])

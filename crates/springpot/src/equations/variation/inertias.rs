@@ -7,9 +7,9 @@ use crate::system::sensitivity::{Seed, Sensitivity};
 #[derive(Debug, Default)]
 pub(super) struct Inertias {
     /// By joint of the extended robot, with parameter and change.
-    pub(super) links: Vec<(usize, Vec<(usize, Inertia)>)>,
+    links: Vec<(usize, Vec<(usize, Inertia)>)>,
     pub(super) rotors: Vec<(usize, usize, f64)>,
-    pub(super) fields: Vec<(usize, [f64; 3])>,
+    fields: Vec<(usize, [f64; 3])>,
 }
 
 impl Inertias {
@@ -35,5 +35,22 @@ impl Inertias {
             }
         }
         own
+    }
+
+    /// Changes of links, joint by joint.
+    pub(super) fn links(&self) -> Vec<(usize, Vec<Inertia>)> {
+        let own = |changes: &[(usize, Inertia)]| changes.iter().map(|(_, change)| *change).collect();
+        self.links.iter().map(|(joint, changes)| (*joint, own(changes))).collect()
+    }
+
+    /// Changes of gravity.
+    pub(super) fn fields(&self) -> Vec<[f64; 3]> {
+        self.fields.iter().map(|(_, change)| *change).collect()
+    }
+
+    /// Which parameter each of these is of, one after the other, those of links first.
+    pub(super) fn parameters(&self) -> impl Iterator<Item = usize> + '_ {
+        let links = self.links.iter().flat_map(|(_, changes)| changes.iter().map(|(p, _)| *p));
+        links.chain(self.fields.iter().map(|(p, _)| *p))
     }
 }

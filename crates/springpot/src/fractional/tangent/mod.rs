@@ -70,7 +70,8 @@ use super::kernel::KernelError;
 use super::kind::Kind;
 use super::memory::{Memory, StepStart};
 use super::step::{CUBIC, Form, RatePolynomial, SEXTIC};
-use crate::collocation::{Gaps, MAX_NODES, Nodes, Places};
+use crate::collocation::{Gaps, MAX_NODES, Nodes, Places, TABLEAU};
+use crate::linalg::columns::put;
 use columns::{Columns, add, rows};
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, dispatch, f64x8};
@@ -140,6 +141,12 @@ impl TangentStep<'_> {
                 let RatePolynomial { u, .. } = RatePolynomial::through_both(self.start.h, of, [&stroke, &rate]);
                 out[j..].iter_mut().step_by(parameters).zip(u).for_each(|(out, u)| *out = u);
             }
+            return;
+        }
+        if (self.form, self.nodes, self.places) == (Form::Rates, Nodes::Radau, None) {
+            let rates = [0, 1, 2, 3].map(|k| &delta_rate[k * parameters..(k + 1) * parameters]);
+            let lines = out.chunks_exact_mut(parameters.max(1)).zip(&TABLEAU.rates);
+            lines.for_each(|(out, line)| put(out, *line, rates));
             return;
         }
         out.fill(0.0);

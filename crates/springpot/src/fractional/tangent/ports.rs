@@ -144,6 +144,35 @@ impl MemoryTangent {
         self.ports = Some(Ports { columns, asked: Mutex::default(), kernel: None, committed: None, moved });
     }
 
+    /// The same memory by other columns, of which each moves its order as one of these does or not at all, and whose past is told by `ports`.
+    pub(crate) fn narrowed(&self, of: &[Option<usize>], ports: PortColumns) -> Self {
+        let zeros = || vec![0.0; of.len()];
+        let mut own = Self {
+            parameters: of.len(),
+            alpha: of.iter().map(|p| p.map_or(0.0, |p| self.alpha[p])).collect(),
+            origin: zeros(),
+            travelled: zeros(),
+            now: zeros(),
+            told: None,
+            jumps: Vec::new(),
+            modes: Columns::new(of.len(), 0),
+            piece: Columns::new(of.len(), self.piece.rows()),
+            by_order: None,
+            is_recalled: self.is_recalled,
+            ports: None,
+        };
+        own.tell_by(ports);
+        own
+    }
+
+    /// Hands over to the same memory by other columns what is the same for all of them: where the order moves, and how wide the last piece is.
+    pub(crate) fn lend(&mut self, other: &mut Self) {
+        std::mem::swap(&mut self.by_order, &mut other.by_order);
+        if other.piece.rows() != self.piece.rows() {
+            other.piece = Columns::new(other.parameters, self.piece.rows());
+        }
+    }
+
     /// Nothing was asked for.
     pub(crate) fn forget_asked(&mut self) {
         if let Some(ports) = &mut self.ports {

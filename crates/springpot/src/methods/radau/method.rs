@@ -186,14 +186,18 @@ impl Stepper for Radau {
     }
 
     fn vary(&mut self, _: Context, recorder: &mut Recorder, step: &Target) -> Result<(), RunError> {
-        let Recorder { equations, variation, .. } = recorder;
+        let Recorder { equations, variation, recording, .. } = recorder;
         let Some(variation) = variation else { return Ok(()) };
         // What shares in the choice of steps was worked out with the step.
         if variation.shares_in_steps() {
             return Ok(());
         }
         let leaning = equations.lean(step.size, &self.step.errors.noise);
-        let is_regular = self.step.vary(equations, variation, step.size, step.end_inputs());
+        let (size, t_end) = (step.size, step.end_inputs());
+        let is_regular = match recording.as_deref().filter(|recording| recording.takes_whole(variation, equations)) {
+            Some(recording) => self.step.keep(equations, (variation, recording), size, t_end),
+            None => self.step.vary(equations, variation, size, t_end),
+        };
         equations.stand(leaning);
         if is_regular {
             return Ok(());
@@ -206,7 +210,15 @@ impl Stepper for Radau {
     }
 
     fn vary_within(&mut self, recorder: &mut Recorder, within: Option<(f64, f64)>) {
-        let Some(variation) = &mut recorder.variation else { return };
+        let Recorder { equations, variation: Some(variation), .. } = recorder else { return };
+        if let (Some((_, size)), true) = (within, variation.is_unsolved())
+            && let Some(t_end) = variation.follow_columns()
+        {
+            // It was regular when it was kept.
+            let leaning = equations.lean(size, &self.step.errors.noise);
+            self.step.vary(equations, variation, size, t_end);
+            equations.stand(leaning);
+        }
         match within {
             Some((theta, size)) => self.step.vary_within(variation, theta, size),
             None => variation.take_start(ROW),

@@ -8,7 +8,7 @@ use super::estimate::raw;
 use super::step::{EstimateScratch, RadauStep};
 use crate::collocation::radau::{A, A_SQUARED, ESTIMATE, GAMMA};
 use crate::collocation::{RADAU_NODES, STAGES, TABLEAU, integrals};
-use crate::equations::{Equations, Found, NodeVariation, ROW, StepErrors, TANGENTS, Variation};
+use crate::equations::{Equations, Found, NodeVariation, ROW, Recording, StepErrors, TANGENTS, Variation};
 use crate::linalg::Lu;
 use crate::linalg::columns::{add, put};
 use crate::model::{FreeTurn, Turned, add_turned};
@@ -84,19 +84,42 @@ impl RadauStep {
         true
     }
 
+    /// Sees the stages of the step that was solved, of size `h`, where signals at its end are those at `t_end`.
+    fn see_stages(&self, equations: &Equations, variation: &mut Variation, h: f64, t_end: f64) {
+        let elements = variation.elements.len();
+        let mut force = vec![0.0; STAGES * elements];
+        for (place, force) in force.iter_mut().enumerate() {
+            *force = variation.response(equations, place % elements).force[place / elements];
+        }
+        let times = [self.origin.t + RADAU_NODES[0] * h, self.origin.t + RADAU_NODES[1] * h, t_end];
+        variation.see_stages(equations, std::array::from_fn(|i| self.stages[i].node(times[i])), &force);
+        for i in 0..STAGES {
+            variation.steer(i + 1, equations, &force[i * elements..(i + 1) * elements]);
+        }
+    }
+
+    /// Keeps what it takes to go back through the step, as [`Self::vary`] has it.
+    pub(super) fn keep(
+        &self,
+        equations: &Equations,
+        (variation, recording): (&mut Variation, &Recording),
+        h: f64,
+        t_end: f64,
+    ) -> bool {
+        self.see_stages(equations, variation, h, t_end);
+        let free = variation.of_run(equations.free());
+        let fill = |variation: &Variation, matrix: &mut [f64]| {
+            self.fill_matrix(equations, variation, (&free, h), matrix);
+        };
+        recording.keep_step(variation, equations, (h, t_end), fill)
+    }
+
     /// Works out what changes over the step that was solved, of size `h`, where signals at its end are those at `t_end`; false where nothing does
     /// so in one way.
     pub(super) fn vary(&mut self, equations: &Equations, variation: &mut Variation, h: f64, t_end: f64) -> bool {
         variation.share_forces(equations);
         let free = variation.of_run(equations.free());
-        let elements = variation.elements.len();
-        let mut force = vec![0.0; elements];
-        for (i, stage) in self.stages.iter().enumerate() {
-            force.iter_mut().enumerate().for_each(|(e, force)| *force = variation.response(equations, e).force[i]);
-            let t = if i + 1 == STAGES { t_end } else { self.origin.t + RADAU_NODES[i] * h };
-            variation.see(equations, i + 1, stage.node(t), &force);
-            variation.steer(i + 1, equations, &force);
-        }
+        self.see_stages(equations, variation, h, t_end);
         if !self.model.is_one_degree() && !self.look_at_turns(equations, variation, h) {
             return false;
         }
@@ -309,27 +332,29 @@ impl RadauStep {
                 }
             }
         }
-        // What changes of an element's force by the accelerations of all stages.
-        let mut force = vec![0.0; size];
+        // What changes of an element's strokes, rates and forces by the accelerations of all stages.
+        let (mut strokes, mut rates, mut force) = (vec![0.0; STAGES * size], vec![0.0; STAGES * size], vec![0.0; size]);
         for e in 0..variation.elements.len() {
             let response = variation.response(equations, e);
             let slopes = [1, 2, 3].map(|m| &variation.nodes[m].gradients[e]);
-            for (i, lines) in matrix.chunks_exact_mut(own * size).enumerate() {
-                force.fill(0.0);
-                for (m, [g, y]) in slopes.iter().enumerate() {
-                    let (stroke, rate) = (response.d_stroke[i][m], response.d_rate[i][m]);
-                    for (j, force) in force.chunks_exact_mut(own).enumerate() {
-                        let (twice, once) = (h * h * A_SQUARED[m][j], h * A[m][j]);
-                        let (by_g, by_y) = (twice * stroke + once * rate, twice * rate);
-                        for (force, &column) in force.iter_mut().zip(free) {
-                            *force += by_g * g[column] + by_y * y[column];
-                        }
+            for (m, [g, y]) in slopes.iter().enumerate() {
+                for j in 0..STAGES {
+                    let (twice, once, from) = (h * h * A_SQUARED[m][j], h * A[m][j], m * size + j * own);
+                    let blocks = strokes[from..from + own].iter_mut().zip(&mut rates[from..from + own]);
+                    for ((stroke, rate), &column) in blocks.zip(free) {
+                        (*stroke, *rate) = (twice * g[column], twice * y[column] + once * g[column]);
                     }
                 }
+            }
+            let [moved, carried] = [&strokes, &rates].map(|rows| [0, 1, 2].map(|m| &rows[m * size..(m + 1) * size]));
+            for (i, lines) in matrix.chunks_exact_mut(own * size).enumerate() {
+                let ([a, b, c, _], [d, e, f, _]) = (response.d_stroke[i], response.d_rate[i]);
+                put(&mut force, [a, b, c], moved);
+                add(&mut force, [d, e, f], carried);
                 let [on, _] = slopes[i];
                 let felt = |row: usize| on[row] != 0.0 && !variation.relieves(i + 1, row);
                 for (line, &row) in lines.chunks_exact_mut(size).zip(free).filter(|(_, row)| felt(**row)) {
-                    line.iter_mut().zip(&force).for_each(|(entry, force)| *entry += on[row] * force);
+                    add(line, [on[row]], [&force]);
                 }
             }
         }

@@ -3,7 +3,8 @@
 //! With s̄ = ∂m/∂s of the state s behind a cut, and y = R c, s = S c of the columns c in front of it: c̄ = Sᵀ s̄ + Σ Rᵀ ∂m/∂y. Those of parameters add
 //! up; those of ones are ∂m/∂s of the state at the cut before.
 
-use super::tape::{Entries, Entry, PIECES, Row};
+use super::tape::{Entries, Entry, PIECES, Part};
+use super::through::Through;
 use crate::fractional::{MemoryAdjoint, OfStep};
 use crate::system::sensitivity::Share;
 
@@ -14,20 +15,22 @@ type Seed = (usize, usize, usize, f64);
 #[derive(Debug)]
 pub(crate) struct Backwards {
     /// M.
-    count: usize,
+    pub(super) count: usize,
     parameters: usize,
     /// Number of columns, of quantities of a row.
     columns: usize,
     quantities: usize,
     seeds: Vec<Seed>,
-    state: Vec<f64>,
-    memories: Vec<MemoryAdjoint>,
-    sum: Vec<f64>,
+    pub(super) state: Vec<f64>,
+    pub(super) memories: Vec<MemoryAdjoint>,
+    pub(super) sum: Vec<f64>,
     /// Which numbers count rows behind the cut.
-    counts: Vec<bool>,
+    pub(super) counts: Vec<bool>,
     /// Room for what counts of columns: of all, and of a row.
     by: Vec<f64>,
     of_row: Vec<f64>,
+    /// Room to go through steps in.
+    pub(super) room: Through,
 }
 
 impl Backwards {
@@ -51,12 +54,18 @@ impl Backwards {
             counts: vec![false; count],
             by: Vec::new(),
             of_row: Vec::new(),
+            room: Through::default(),
         }
     }
 
     /// Goes back over a stretch.
     pub(crate) fn go(&mut self, entries: &Entries) {
-        entries.all.iter().rev().for_each(|entry| self.over(entry));
+        for part in entries.all.iter().rev() {
+            match part {
+                Part::Cut(entry) => self.over(entry),
+                Part::Step(step) => self.through(step),
+            }
+        }
     }
 
     /// The derivatives of each number by all parameters.
@@ -66,9 +75,9 @@ impl Backwards {
     }
 
     /// What counts of the quantities of a row, and whether it rests on them; `None` where nothing does.
-    fn counted(&self, row: &Row) -> Option<(Vec<f64>, Vec<bool>)> {
-        let own = &self.seeds[self.seeds.partition_point(|(at, ..)| *at < row.number)..];
-        let own = &own[..own.partition_point(|(at, ..)| *at == row.number)];
+    pub(super) fn counted(&self, row: usize) -> Option<(Vec<f64>, Vec<bool>)> {
+        let own = &self.seeds[self.seeds.partition_point(|(at, ..)| *at < row)..];
+        let own = &own[..own.partition_point(|(at, ..)| *at == row)];
         let mut by = vec![0.0; self.quantities * self.count];
         let mut rests = vec![false; by.len()];
         for (_, quantity, m, slope) in own {
@@ -87,7 +96,7 @@ impl Backwards {
         let mut told_by_rows = Vec::new();
         let mut counts = self.counts.clone();
         for row in &entry.rows {
-            let Some((seeds, rests)) = self.counted(row) else { continue };
+            let Some((seeds, rests)) = self.counted(row.number) else { continue };
             for (m, counts) in counts.iter_mut().enumerate() {
                 *counts |= rests.iter().skip(m).step_by(count).any(|rests| *rests);
             }

@@ -1,6 +1,7 @@
 //! By which parameters derivatives end in a run that was kept, and where: from its start on, over the places of its maps that are not 0.
 
-use super::tape::{Entries, Entry};
+use super::step::SolvedStep;
+use super::tape::{Entries, Entry, Part};
 use crate::system::sensitivity::Lost;
 
 /// Which parameters have changed a number so far.
@@ -26,12 +27,28 @@ impl Endings {
 
     /// Goes on over a stretch.
     pub(crate) fn go(&mut self, entries: &Entries) {
-        entries.all.iter().for_each(|entry| self.over(entry));
+        for part in &entries.all {
+            match part {
+                Part::Cut(entry) => self.over(entry),
+                Part::Step(step) => self.through(step),
+            }
+        }
     }
 
     /// What has ended, parameter by parameter.
     pub(crate) fn lost(self) -> Vec<Lost> {
         self.lost.into_iter().flatten().collect()
+    }
+
+    /// Through the equations of a step whatever changes anything changes all.
+    fn through(&mut self, step: &SolvedStep) {
+        let Self { parameters, state, memories, .. } = self;
+        let mut all = vec![false; *parameters];
+        step.plan.each_parameter().for_each(|p| all[p] = true);
+        state.iter().chain(&*memories).for_each(|reached| join(&mut all, reached));
+        memories.iter_mut().for_each(|memory| memory.clone_from(&all));
+        state.clear();
+        state.resize(step.plan.numbers(), all);
     }
 
     fn over(&mut self, entry: &Entry) {

@@ -1,6 +1,7 @@
 //! What is kept of each step, while the run goes on.
 
 use super::room::Columns;
+use super::step::Plan;
 use super::tape::{Entries, Entry, Map, MemoryOfEntry, PIECES, Row, Starts};
 use crate::equations::assembly::Equations;
 use crate::equations::control::{OfSamples, Sampler};
@@ -8,7 +9,7 @@ use crate::equations::variation::Variation;
 use crate::observe::{Quantity, Snapshot};
 use crate::system::System;
 use crate::system::sensitivity::{Sensitivity, SensitivityError};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A run that is being recorded, beside the variation of it by [`Self::columns`].
 #[derive(Debug)]
@@ -19,6 +20,9 @@ pub(crate) struct Recording {
     is_due: bool,
     took_step: bool,
     starts: Starts,
+    /// What steps have in common that are gone back through by their own equations, where there are such.
+    plan: OnceLock<Option<Arc<Plan>>>,
+    has_events: bool,
     rows: Vec<Row>,
     entries: Entries,
     /// Room to work in: a map that is made, and which columns something is made of.
@@ -47,6 +51,8 @@ impl Recording {
             is_due: true,
             took_step: false,
             starts: Starts::default(),
+            plan: OnceLock::new(),
+            has_events: !system.events.is_empty(),
             rows: Vec::new(),
             entries: Entries::default(),
             map: Map::default(),
@@ -111,6 +117,50 @@ impl Recording {
     /// Whether a step was taken into the past since the last cut: sums over what is behind it are not told by columns.
     pub(crate) fn took_step(&self) -> bool {
         self.took_step
+    }
+
+    /// Whether the step at hand can be gone back through by its own equations: nothing changed since the last cut, and nothing but motion and memories
+    /// goes on through the step.
+    pub(crate) fn takes_whole(&self, variation: &Variation, equations: &Equations) -> bool {
+        let is_cut = !self.is_due && self.rows.is_empty();
+        if !is_cut || self.has_events || !equations.is_smooth() || !variation.goes_on(equations) {
+            return false;
+        }
+        let parameters = self.columns.parameters;
+        let plan = || variation.plan(equations, &self.quantities, parameters).map(Arc::new);
+        let numbers = self.plan.get_or_init(plan).as_ref().map_or(0, |plan| plan.numbers());
+        numbers > 0 && self.starts.columns.iter().all(|(number, _)| (*number as usize) < numbers)
+    }
+
+    /// Keeps such a step, whose stages were seen, of size h, at whose end signals are those at `t_end`; `fill` writes J into zeros. `false` where that is
+    /// singular.
+    pub(crate) fn keep_step(
+        &self,
+        variation: &mut Variation,
+        equations: &Equations,
+        size: (f64, f64),
+        fill: impl FnOnce(&Variation, &mut [f64]),
+    ) -> bool {
+        let Some(plan) = self.plan.get().and_then(Option::as_ref) else { return false };
+        variation.keep_step(equations, (plan, &self.starts), size, fill)
+    }
+
+    /// Notes row `number` at θ of such a step; `false` where it tells more than the motion.
+    pub(crate) fn note_row(&self, variation: &mut Variation, number: usize, theta: f64) -> bool {
+        let is_noted = variation.is_unsolved() && self.quantities.iter().all(|of| variation.is_motion(*of));
+        if is_noted {
+            variation.note_row(number, theta);
+        }
+        is_noted
+    }
+
+    /// Takes such a step into the past: columns of ones stand for the state behind it.
+    pub(crate) fn take_step(&mut self, variation: &mut Variation, equations: &Equations) {
+        let Some(step) = variation.commit_step(equations, self.columns.parameters) else { return };
+        self.starts.columns.clear();
+        let numbers = 0..step.plan.numbers() as u32;
+        self.starts.columns.extend(numbers.map(|number| (number, self.columns.parameters as u32 + number)));
+        self.entries.push_step(step);
     }
 
     /// Cuts what was taken into the past off, where anything was: columns of ones stand for the state from here on.

@@ -1,5 +1,6 @@
 //! What is kept of a run so that one can go back through it: of each step the linear map of what parameters change.
 
+use super::step::SolvedStep;
 use crate::fractional::{PastOfStep, SEXTIC, Told};
 use crate::linalg::columns::add;
 use crate::system::sensitivity::Lost;
@@ -144,22 +145,55 @@ pub(super) struct MemoryOfEntry {
 /// Rows of [`MemoryOfEntry::kept`].
 pub(super) const PIECES: usize = SEXTIC;
 
+/// What a memory does in a step that is gone back through by its own equations.
+#[derive(Debug)]
+pub(super) struct MemoryOfStep {
+    /// The step as it was taken into its past.
+    pub(super) past: Option<PastOfStep>,
+    /// How many coefficients its piece has.
+    pub(super) rows: usize,
+    /// Columns of its law, and what they stand for.
+    pub(super) told: Vec<(usize, Told)>,
+}
+
+impl MemoryOfStep {
+    pub(super) fn bytes(&self) -> usize {
+        let told = |(_, told): &(usize, Told)| size_of::<(usize, Told)>() + told.bytes();
+        let past = self.past.as_ref().map_or(0, PastOfStep::bytes);
+        size_of::<Self>() + past + self.told.iter().map(told).sum::<usize>()
+    }
+}
+
+/// A part of a stretch.
+#[derive(Debug)]
+pub(super) enum Part {
+    /// From one cut to the next, by all columns.
+    Cut(Box<Entry>),
+    /// A step by its own equations.
+    Step(Box<SolvedStep>),
+}
+
 /// A stretch of a run as it is gone back through.
 #[derive(Debug, Default)]
 pub(crate) struct Entries {
-    pub(super) all: Vec<Entry>,
+    pub(super) all: Vec<Part>,
     bytes: usize,
 }
 
 impl Entries {
     pub(super) fn push(&mut self, entry: Entry) {
         self.bytes += entry.bytes();
-        self.all.push(entry);
+        self.all.push(Part::Cut(Box::new(entry)));
+    }
+
+    pub(super) fn push_step(&mut self, step: Box<SolvedStep>) {
+        self.bytes += step.bytes();
+        self.all.push(Part::Step(step));
     }
 
     /// Whether derivatives end in it.
     pub(crate) fn has_endings(&self) -> bool {
-        self.all.iter().any(|entry| !entry.lost.is_empty())
+        self.all.iter().any(|part| matches!(part, Part::Cut(entry) if !entry.lost.is_empty()))
     }
 
     /// How much they hold, bytes.
