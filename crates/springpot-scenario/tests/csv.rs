@@ -150,8 +150,11 @@ impl std::io::Read for Trickle<'_> {
     }
 }
 
-/// Every row with its line, and what is wrong behind the last one.
-fn rows_of(reader: impl std::io::Read) -> (Vec<(u64, Vec<Vec<u8>>)>, String) {
+/// A row with its line.
+type Row = (u64, Vec<Vec<u8>>);
+
+/// Every row, and what is wrong behind the last one.
+fn rows_of(reader: impl std::io::Read) -> (Vec<Row>, String) {
     let mut read = Vec::new();
     let mut rows = match CsvRows::new(reader) {
         Ok(rows) => rows,

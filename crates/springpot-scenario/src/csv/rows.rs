@@ -40,9 +40,12 @@ enum Source<R> {
     Ended,
 }
 
+/// What is held of a file, what follows it, and the end of its last line.
+type Rest<R> = io::Chain<Checked<io::Chain<Cursor<Vec<u8>>, R>>, &'static [u8]>;
+
 /// The rest of a file with its quotes.
 struct Quoted<R> {
-    reader: ::csv::Reader<io::Chain<Checked<io::Chain<Cursor<Vec<u8>>, R>>, &'static [u8]>>,
+    reader: ::csv::Reader<Rest<R>>,
     record: ::csv::ByteRecord,
     /// Lines before it.
     before: u64,
