@@ -138,7 +138,7 @@ mod tests {
         }
         assert!(halves > 3000, "{halves}");
         let mut text = String::new();
-        push_number(&mut text, 1.038_551_330_566_406_25);
+        push_number(&mut text, "1.03855133056640625".parse().unwrap());
         assert_eq!(text, "1.0385513305664063");
     }
 
