@@ -13,6 +13,9 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, OnceLock, PoisonError};
 use tempfile::TempPath;
 
+/// Bytes that are written to a file at a time.
+const CHUNK: usize = 1 << 16;
+
 /// Links that are followed one after another, as many as Linux does.
 const MOST_LINKS: usize = 40;
 
@@ -57,7 +60,7 @@ impl Output {
             File::options().write(true).open(&target)?;
         }
         let (file, path) = beside(&target)?;
-        Ok(Self(Sink::Beside { file: BufWriter::new(file), path, target }))
+        Ok(Self(Sink::Beside { file: BufWriter::with_capacity(CHUNK, file), path, target }))
     }
 
     /// Whether what was written is out already.

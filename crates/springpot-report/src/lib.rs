@@ -40,6 +40,7 @@ mod surface;
 pub mod vector;
 
 pub use chart::{Axis, Curve, Panel, Plot, Scale};
+pub use draw::Drawn;
 pub use mesh::MeshFile;
 pub use robot::{ElementMark, ElementShape, ElementSign, JointKind, JointMark, Link, RobotDrawing, WORLD};
 

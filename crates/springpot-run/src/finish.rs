@@ -54,6 +54,8 @@ impl Prepared {
         begun.insert("id".to_owned(), self.id.clone().into());
         // Who watches may see less; the run goes on.
         let _ = self.folder.tell(&begun);
+        // Of many elements it is large.
+        drop(begun);
         self.drawn = Some(drawn);
         let (checkpoints, source) = (self.checkpoints.as_ref(), self.source.as_deref());
         let options = Options { jobs, stop, progress, checkpoints, source, shard: self.shard };

@@ -27,7 +27,7 @@ impl Planned {
     pub fn of(scenario: &Scenario, catalog: &Catalog, stop: &Stop, warn: Warn<'_>) -> Result<Self, Refusals> {
         let cases = scenario.cases(catalog)?;
         let plan = cases.plan(0)?;
-        let system = plan.system_unless(stop);
+        let system = plan.system_unless(stop).sharing(cases.shared());
         robot_warnings(&cases).into_iter().for_each(warn);
         let layout = Layout::new(&cases, &plan)?;
         Ok(Self { cases, plan, system, layout })

@@ -134,6 +134,7 @@ impl Survey {
             match cases.plan(index) {
                 Ok(plan) => {
                     let system = if depth == Depth::Paths { plan.system() } else { plan.system_at_start() };
+                    let system = system.sharing(cases.shared());
                     survey.remark(index, plan.warnings.iter().cloned().chain(checks::sizes(&plan, &system)));
                     survey.look(index, &plan, &system, depth, stop);
                 }
@@ -155,10 +156,11 @@ impl Survey {
             }
             Err(error) => return self.failures.push((index, Trouble::of(&error, plan))),
         }
+        let mut watch = LimitWatch::new(system);
         if depth == Depth::Paths
+            && !watch.is_empty()
             && let Ok(row) = system.first_row(&plan.settings)
         {
-            let mut watch = LimitWatch::new(system);
             watch.see(&row);
             self.limits.take(index, &watch.passed());
         }

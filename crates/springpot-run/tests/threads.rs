@@ -1,9 +1,10 @@
 //! Rows and threads change nothing.
 
 use springpot::law::Catalog;
-use springpot_run::sweep::{self, Layout, Options, Progress};
+use springpot_run::sweep::{self, Layout, Options, Parcel, Progress};
 use springpot_run::table::disk::Disk;
 use springpot_run::table::folder::{Folder, Targets};
+use springpot_run::{Depth, Survey};
 use springpot_scenario::Scenario;
 use std::sync::atomic::AtomicBool;
 
@@ -41,4 +42,31 @@ fn a_sweep_gives_the_same_bytes_for_any_number_of_threads() {
         .collect();
     assert!(results[0].len() > 10_000);
     assert!(results.iter().all(|bytes| *bytes == results[0]));
+}
+
+/// Cases that move alike: one look at their signals, whoever asks, and a kernel for each order.
+#[test]
+fn signals_are_looked_through_once_for_each_motion() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios");
+    let text = std::fs::read_to_string(format!("{folder}/thermoviscoelastic_order.toml")).unwrap();
+    let looked = |sweep: Option<&str>| {
+        let mut scenario = Scenario::parse(&text, "arm.toml", folder).unwrap();
+        scenario.set("time.end=0.1").unwrap();
+        sweep.into_iter().for_each(|sweep| scenario.sweep(sweep).unwrap());
+        let cases = scenario.cases(&Catalog::standard()).unwrap();
+        let (stop, progress) = (AtomicBool::new(false), Progress::default());
+        let plan = cases.plan(0).unwrap();
+        let (layout, system) = (Layout::new(&cases, &plan).unwrap(), plan.system().sharing(cases.shared()));
+        Survey::of(&cases, &plan, &system, Depth::Paths, &stop).unwrap();
+        system.switches(&plan.settings, &stop).unwrap();
+        assert!(cases.shared().kernels().is_empty(), "a survey needs none");
+        for index in 0..cases.len() {
+            let parcel = Parcel::run(&cases, &layout, index, &stop, &progress).unwrap();
+            assert!(parcel.error().is_none());
+        }
+        (cases.shared().looked(), cases.shared().kernels().len())
+    };
+    // Of six orders one is 1, which has no kernel.
+    assert_eq!(looked(None), (1, 5));
+    assert_eq!(looked(Some("motion.joints.q3=0.1*t,0.2*sin(t)")).0, 2);
 }

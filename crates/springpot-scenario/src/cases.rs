@@ -29,7 +29,7 @@ use crate::time;
 use crate::units::Unit;
 use springpot::Simulation;
 use springpot::law::Catalog;
-use springpot::system::RunError;
+use springpot::system::{RunError, Shared};
 use std::cell::{Cell, OnceCell};
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -71,6 +71,8 @@ pub struct Cases {
     tell_joint_losses: bool,
     /// What is to be said of the sweeps.
     remarks: Vec<Remark>,
+    /// What the systems of cases have in common.
+    shared: Shared,
 }
 
 impl Scenario {
@@ -131,6 +133,7 @@ impl Cases {
             units: Vec::new(),
             tell_joint_losses: false,
             remarks: Vec::new(),
+            shared: Shared::default(),
         };
         cases.read_sweeps(scenario)?;
         Ok(cases)
@@ -144,6 +147,11 @@ impl Cases {
     /// Always false.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// What the systems of cases have in common ([`System::sharing`](springpot::system::System::sharing)).
+    pub fn shared(&self) -> &Shared {
+        &self.shared
     }
 
     /// Number of sweeps.

@@ -1,6 +1,7 @@
 //! Columns of numbers from CSV files: a header row, a time column that increases, UTF-8.
 
 mod error;
+mod lines;
 mod rows;
 
 pub use error::{CsvError, CsvProblem};

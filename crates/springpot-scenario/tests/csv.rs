@@ -137,6 +137,62 @@ fn bytes() -> impl Strategy<Value = Vec<u8>> {
     ]
 }
 
+/// Gives its bytes a few at a time.
+struct Trickle<'a>(&'a [u8], usize);
+
+impl std::io::Read for Trickle<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let count = self.1.min(self.0.len()).min(buffer.len());
+        let (now, later) = self.0.split_at(count);
+        buffer[..count].copy_from_slice(now);
+        (self.0, self.1) = (later, self.1 % 7 + 1);
+        Ok(count)
+    }
+}
+
+/// A row with its line.
+type Row = (u64, Vec<Vec<u8>>);
+
+/// Every row, and what is wrong behind the last one.
+fn rows_of(reader: impl std::io::Read) -> (Vec<Row>, String) {
+    let mut read = Vec::new();
+    let mut rows = match CsvRows::new(reader) {
+        Ok(rows) => rows,
+        Err(problem) => return (read, problem.to_string()),
+    };
+    loop {
+        match rows.next_row() {
+            Ok(Some(row)) => read.push((row.line(), row.cells().map(<[u8]>::to_vec).collect())),
+            Ok(None) => return (read, format!("ends behind line {}", rows.line())),
+            Err(problem) => return (read, problem.to_string()),
+        }
+    }
+}
+
+/// Quotes in the header have all of the file read with quotes, by another reader.
+#[test]
+fn lines_are_split_as_files_with_quotes_are() {
+    let (mut runner, long) = (TestRunner::new(config(3_000)), std::cell::Cell::new(0));
+    let outcome = runner.run(&(bytes(), 1..8_usize), |(bytes, few)| {
+        let [plain, quoted] = [&b"t,q1\n"[..], b"\"t\",q1\n"].map(|header| [header, &bytes].concat());
+        let rows = rows_of(Trickle(&plain, few));
+        long.set(long.get() + usize::from(rows.0.len() > 2));
+        prop_assert_eq!(&rows, &rows_of(&quoted[..]));
+        prop_assert_eq!(&rows, &rows_of(&plain[..]));
+        Ok(())
+    });
+    if let Err(error) = outcome {
+        panic!("{error}");
+    }
+    assert!(long.get() > 300, "only {} files have rows", long.get());
+    for text in ["\u{feff}# \"a\n t , x \n\n1, 2\r\n#3,4\n 5,\"6\n7\"\n8,9", "\u{feff}"] {
+        let rows = rows_of(Trickle(text.as_bytes(), 1));
+        let cells = |row: &[&str]| row.iter().map(|cell| cell.as_bytes().to_vec()).collect::<Vec<_>>();
+        let expected = [(4, cells(&["1", "2"])), (7, cells(&["5", "6\n7"])), (8, cells(&["8", "9"]))];
+        assert_eq!(rows.0, expected[..if text.len() > 9 { 3 } else { 0 }], "{rows:?}");
+    }
+}
+
 fn never_panics(cases: u32) {
     let accepted = std::cell::Cell::new(0_u32);
     let mut runner = TestRunner::new(config(cases));

@@ -1,4 +1,4 @@
-//! The `_into` algorithms do not allocate, nor do memories and their derivatives once they have begun.
+//! The `_into` algorithms do not allocate, nor do memories and their derivatives once they have begun; alike elements share what they can.
 
 #![allow(unsafe_code, reason = "a global allocator that counts")]
 
@@ -14,10 +14,12 @@ use springpot::dynamics::{
     pair_hessian_into, pair_into, point_jacobian_into, point_jacobian_rate_into, potential_energy,
     rnea_derivatives_into, rnea_into,
 };
+use springpot::elements::{ElementBank, MemoryRange};
 use springpot::fractional::{
     EnergyTangent, Form, Kind, Memory, MemoryTangent, RatePolynomial, Singular, StepStart, TangentEnd, TangentPoint,
     TangentSeeds, TangentStep,
 };
+use springpot::law::{Derivative, Network, Start};
 use springpot::model::{Anchor, BodySpec, JointSpec, Mimic, Model, ModelBuilder, Parent};
 use springpot::spatial::{Force, Vec3};
 
@@ -25,27 +27,36 @@ struct Counting;
 
 thread_local! {
     static COUNT: Cell<usize> = const { Cell::new(0) };
+    /// Bytes that are not given back.
+    static HELD: Cell<isize> = const { Cell::new(0) };
 }
 
 // SAFETY: every call is handed to the system allocator unchanged.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         COUNT.with(|count| count.set(count.get() + 1));
+        hold(layout.size(), 0);
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        hold(0, layout.size());
         unsafe { System.dealloc(pointer, layout) }
     }
 
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         COUNT.with(|count| count.set(count.get() + 1));
+        hold(size, layout.size());
         unsafe { System.realloc(pointer, layout, size) }
     }
 }
 
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
+
+fn hold(taken: usize, given: usize) {
+    HELD.with(|held| held.set(held.get() + taken as isize - given as isize));
+}
 
 fn allocations(work: impl FnOnce()) -> usize {
     let before = COUNT.with(Cell::get);
@@ -132,6 +143,36 @@ fn nor_do_memories_and_their_derivatives() {
     let count = allocations(|| (0..50).for_each(|k| step(0.02 + 1e-4 * f64::from(k))));
     assert_eq!(count, 0);
     assert!(explicit.iter().chain(&at).all(|x| x.is_finite()));
+}
+
+/// A bank of equal springpots after steps of several sizes: its elements share kernel and tables.
+#[test]
+fn alike_elements_hold_little_memory() {
+    let held = |count: usize| {
+        let before = HELD.with(Cell::get);
+        let law = Network::springpot(3.0, 0.4, Derivative::Caputo);
+        let mut bank = ElementBank::new(vec![law; count], Nodes::Radau, Form::Rates);
+        let start = Start { stroke: 0.0, jump: 0.0, inputs: &[] };
+        let range = MemoryRange { tolerance: 1e-11, shortest: 1e-3, horizon: 10.0 };
+        bank.begin(&vec![start; count], range).unwrap();
+        let mut t = 0.0f64;
+        for n in 0..12 {
+            let h = 1e-3 * f64::from(n % 4 + 1);
+            bank.start(t, h);
+            for e in 0..count {
+                for (k, c) in [0.0].iter().chain(Nodes::Radau.positions()).enumerate() {
+                    bank.set(e, k, (t + c * h).sin(), (t + c * h).cos(), &[]);
+                }
+            }
+            bank.evaluate();
+            bank.commit();
+            t += h;
+        }
+        (HELD.with(Cell::get) - before, bank.force(count - 1))
+    };
+    let ((one, force), (many, same)) = (held(1), held(1001));
+    assert_eq!(force, same);
+    assert!((many - one) / 1000 < 4096, "{} bytes for each", (many - one) / 1000);
 }
 
 fn check(model: &Model) {

@@ -52,7 +52,7 @@ fn describe(file: &Path, options: &CheckOptions, catalog: &Catalog) -> Result<En
     let (measured, warnings) = measured.unwrap_or_default();
     let cases = scenario.cases(catalog)?;
     let plan = cases.plan(0)?;
-    let system = plan.system();
+    let system = plan.system().sharing(cases.shared());
     Layout::new(&cases, &plan)?;
 
     let mut survey = Survey::of(&cases, &plan, &system, Depth::Paths, &Stop::new(false))?;

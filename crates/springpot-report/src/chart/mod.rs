@@ -9,7 +9,7 @@ mod legend;
 mod style;
 mod ticks;
 
-use crate::{Rendered, ReportError, draw};
+use crate::{Drawn, Rendered, ReportError, draw};
 
 /// Panels of one figure.
 const MOST_PANELS: usize = 64;
@@ -127,6 +127,14 @@ impl Plot {
     /// [`ReportError::LengthMismatch`] for a curve with unequal numbers of x and y; [`ReportError::TooManyPanels`] above 64 panels
     /// and [`ReportError::TooManyCurves`] above 2000 curves; [`ReportError::TooSmall`] where the size leaves no room.
     pub fn render(&self) -> Result<Rendered, ReportError> {
+        self.draw()?.rendered()
+    }
+
+    /// As [`Self::render`], where not all formats are wanted.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn draw(&self) -> Result<Drawn, ReportError> {
         let curves = || self.panels.iter().flat_map(|panel| &panel.curves);
         if self.panels.len() > MOST_PANELS {
             return Err(ReportError::TooManyPanels { panels: self.panels.len(), limit: MOST_PANELS });
@@ -138,6 +146,6 @@ impl Plot {
             return Err(ReportError::LengthMismatch { curve: label.clone(), x: x.len(), y: y.len() });
         }
         let font = draw::Font::load()?;
-        draw::render(&layout::scene(self, &font)?, &font)
+        Ok(Drawn::new(layout::scene(self, &font)?, font))
     }
 }

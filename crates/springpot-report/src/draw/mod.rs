@@ -16,12 +16,45 @@ pub(crate) use wrap::{wrap, wrap_evenly};
 
 use crate::{Rendered, ReportError};
 
-/// Writes a scene in all formats.
-pub(crate) fn render(scene: &Scene, font: &Font) -> Result<Rendered, ReportError> {
-    Ok(Rendered {
-        svg: svg::write(scene),
-        png: raster::write(scene, font)?,
-        pdf: pdf::write(scene, font),
-        remarks: scene.remarks.clone(),
-    })
+/// A figure that is laid out; a format is written when it is asked for.
+pub struct Drawn {
+    scene: Scene,
+    font: Font,
+}
+
+impl Drawn {
+    pub(crate) fn new(scene: Scene, font: Font) -> Self {
+        Self { scene, font }
+    }
+
+    /// As [`Rendered::svg`].
+    pub fn svg(&self) -> String {
+        svg::write(&self.scene)
+    }
+
+    /// As [`Rendered::png`].
+    ///
+    /// # Errors
+    /// Where there is no room for so many pixels.
+    pub fn png(&self) -> Result<Vec<u8>, ReportError> {
+        raster::write(&self.scene, &self.font)
+    }
+
+    /// As [`Rendered::pdf`].
+    pub fn pdf(&self) -> Vec<u8> {
+        pdf::write(&self.scene, &self.font)
+    }
+
+    /// As [`Rendered::remarks`].
+    pub fn remarks(&self) -> &[String] {
+        &self.scene.remarks
+    }
+
+    /// It in all formats.
+    ///
+    /// # Errors
+    /// As [`Self::png`].
+    pub fn rendered(self) -> Result<Rendered, ReportError> {
+        Ok(Rendered { svg: self.svg(), png: self.png()?, pdf: self.pdf(), remarks: self.scene.remarks })
+    }
 }

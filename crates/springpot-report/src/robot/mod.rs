@@ -7,7 +7,7 @@ mod sketch;
 mod symbols;
 mod view;
 
-use crate::{Rendered, ReportError, draw, vector};
+use crate::{Drawn, Rendered, ReportError, draw, vector};
 
 /// Name of the link that stands for the ground: its points are drawn with ground hatching.
 pub const WORLD: &str = "world";
@@ -149,9 +149,17 @@ impl RobotDrawing {
     /// # Errors
     /// [`ReportError::NotFinite`] when a coordinate is NaN or infinite.
     pub fn render(&self) -> Result<Rendered, ReportError> {
+        self.draw()?.rendered()
+    }
+
+    /// As [`Self::render`], where not all formats are wanted.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn draw(&self) -> Result<Drawn, ReportError> {
         self.check()?;
         let font = draw::Font::load()?;
-        draw::render(&sketch::scene(self, &font), &font)
+        Ok(Drawn::new(sketch::scene(self, &font), font))
     }
 
     fn check(&self) -> Result<(), ReportError> {

@@ -1,8 +1,8 @@
 //! Columns over a column.
 
 use super::source::Source;
-use springpot_report::Rendered;
+use springpot_report::Drawn;
 
-pub(super) fn draw(source: &Source<'_>) -> Result<Rendered, String> {
-    source.plot()?.render().map_err(|error| error.to_string())
+pub(super) fn draw(source: &Source<'_>) -> Result<Drawn, String> {
+    source.plot()?.draw().map_err(|error| error.to_string())
 }

@@ -7,7 +7,7 @@ use springpot::equations::Pose;
 use springpot::model::{Anchor, JointKind, JointPart, Move, Parent};
 use springpot::system::System;
 use springpot_report::vector::{distance, nearest};
-use springpot_report::{ElementMark, ElementShape, JointMark, Link, Rendered, RobotDrawing, WORLD};
+use springpot_report::{Drawn, ElementMark, ElementShape, JointMark, Link, RobotDrawing, WORLD};
 use springpot_scenario::{FigurePlan, Plan, ShapePlan};
 
 /// Most links of a sketch.
@@ -16,8 +16,8 @@ const MOST_LINKS: usize = 1_000;
 /// What is this near to a line of the sketch, as a share of the robot's size, is on it.
 const ON_LINE: f64 = 0.04;
 
-pub(super) fn draw(source: &Source<'_>) -> Result<Rendered, String> {
-    drawing(source.figure, source.system, source.plan)?.render().map_err(|error| error.to_string())
+pub(super) fn draw(source: &Source<'_>) -> Result<Drawn, String> {
+    drawing(source.figure, source.system, source.plan)?.draw().map_err(|error| error.to_string())
 }
 
 /// The robot at t = 0 with its joints, elements and gripper.

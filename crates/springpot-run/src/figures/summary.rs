@@ -3,9 +3,9 @@
 use super::source::{FreeSweeps, Source};
 use crate::panels::{CasesOver, FigureColumn};
 use crate::sweep::{CaseResult, FigureTotal, Total};
-use springpot_report::Rendered;
+use springpot_report::Drawn;
 
-pub(super) fn draw(source: &Source<'_>) -> Result<Rendered, String> {
+pub(super) fn draw(source: &Source<'_>) -> Result<Drawn, String> {
     let data = source.drawn()?;
     let over = data.over.as_ref().ok_or("it has no abscissa")?;
     let sweeps = FreeSweeps::of(source, Some(over.axis));
@@ -19,7 +19,7 @@ pub(super) fn draw(source: &Source<'_>) -> Result<Rendered, String> {
     }
     let y: Vec<FigureColumn> = data.totals.iter().map(|total| total.y.clone()).collect();
     let plot = cases.plot(source.figure.title.as_deref(), &over.column, &y, &data.look);
-    plot.render().map_err(|error| error.to_string())
+    plot.draw().map_err(|error| error.to_string())
 }
 
 fn value(what: Total, case: &CaseResult) -> Option<f64> {

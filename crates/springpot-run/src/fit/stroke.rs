@@ -1,6 +1,5 @@
 //! The force of one element along a measured stroke.
 
-use springpot::control::Control;
 use springpot::elements::Element;
 use springpot::elements::Joint;
 use springpot::identification::Failed;
@@ -143,17 +142,8 @@ impl Stroke {
         }
         let sensitivity =
             (!sought.is_empty()).then(|| Arc::new(Sensitivity { parameters: sought, ..Sensitivity::default() }));
-        let system = System {
-            model: self.model.clone(),
-            elements: vec![element],
-            motion: Trajectory::Prescribed(vec![JointPath::Coordinate(self.signal.clone())]).into(),
-            gripper: None,
-            tells_joint_losses: false,
-            tells_leaves: false,
-            events: Vec::new(),
-            control: Arc::new(Control::default()),
-            sensitivity,
-        };
+        let motion = Trajectory::Prescribed(vec![JointPath::Coordinate(self.signal.clone())]);
+        let system = System { sensitivity, ..System::new(self.model.clone(), vec![element], motion) };
         let end = self.times[self.times.len() - 1];
         let settings = Settings {
             rtol: self.rtol[0],

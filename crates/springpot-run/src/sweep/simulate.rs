@@ -82,7 +82,7 @@ pub(super) fn simulate(
             });
         }
     };
-    let (system, settings) = (plan.system_unless(stop), plan.settings.clone());
+    let (system, settings) = (plan.system_unless(stop).sharing(cases.shared()), plan.settings.clone());
     let watch = LimitWatch::new(&system);
     let places = plan.places(&system);
     let losses = Losses::of(&plan, Vec::new());

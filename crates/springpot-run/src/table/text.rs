@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 /// A cell as it is written: in quotes where it must be.
 pub fn quoted(cell: &[u8]) -> Cow<'_, [u8]> {
-    if !cell.iter().any(|byte| matches!(byte, b',' | b'"' | b'\n' | b'\r')) {
+    if !cell.iter().fold(false, |found, byte| found | matches!(byte, b',' | b'"' | b'\n' | b'\r')) {
         return Cow::Borrowed(cell);
     }
     let mut text = vec![b'"'];

@@ -1,7 +1,9 @@
 //! The rows of a CSV file as they are read.
 
+use super::lines::{Lines, LongLine, Split};
 use super::{CsvProblem, MAX_LINE};
-use std::io::{self, Read};
+use std::io::{self, Cursor, Read};
+use std::ops::Range;
 
 /// The header and then the rows of a CSV file, one at a time: nothing but the row at hand is kept.
 ///
@@ -21,13 +23,32 @@ use std::io::{self, Read};
 /// # Ok::<(), springpot_scenario::csv::CsvProblem>(())
 /// ```
 pub struct CsvRows<R> {
-    reader: ::csv::Reader<io::Chain<Lines<R>, &'static [u8]>>,
+    source: Source<R>,
+    /// Where the cells of the row that was read last stand in its text, without blanks around them.
+    cells: Vec<Range<usize>>,
     headers: Vec<String>,
     header_line: u64,
     /// Of the row that was read last.
     line: u64,
     separator: char,
+}
+
+/// Lines are split where they stand; from the first one with quotes on, rows may be more than lines.
+enum Source<R> {
+    Lines(Lines<R>),
+    Quoted(Box<Quoted<R>>),
+    Ended,
+}
+
+/// What is held of a file, what follows it, and the end of its last line.
+type Rest<R> = io::Chain<Checked<io::Chain<Cursor<Vec<u8>>, R>>, &'static [u8]>;
+
+/// The rest of a file with its quotes.
+struct Quoted<R> {
+    reader: ::csv::Reader<Rest<R>>,
     record: ::csv::ByteRecord,
+    /// Lines before it.
+    before: u64,
 }
 
 /// One row of a CSV file.
@@ -35,7 +56,8 @@ pub struct CsvRows<R> {
 pub struct CsvRow<'a> {
     line: u64,
     headers: &'a [String],
-    record: &'a ::csv::ByteRecord,
+    text: &'a [u8],
+    cells: &'a [Range<usize>],
     decimal_comma: bool,
 }
 
@@ -54,20 +76,10 @@ impl<R: Read> CsvRows<R> {
     /// # Errors
     /// As [`Self::new`].
     pub fn separated(reader: R, separator: char) -> Result<Self, CsvProblem> {
-        // Lines end with a line feed only (a carriage return before it is trimmed), the last one too: so the line that a record
-        // ends on is known, which the crate's own record position does not tell behind blank lines and CRLF.
-        let reader = ::csv::ReaderBuilder::new()
-            .has_headers(false)
-            .delimiter(u8::try_from(separator).unwrap_or(b','))
-            .comment(Some(b'#'))
-            .flexible(true)
-            .trim(::csv::Trim::All)
-            .terminator(::csv::Terminator::Any(b'\n'))
-            .from_reader(Lines { reader, line: 1, length: 0 }.chain(&b"\n"[..]));
-        let record = ::csv::ByteRecord::new();
-        let mut rows = Self { reader, headers: Vec::new(), header_line: 1, line: 1, separator, record };
+        let source = Source::Lines(Lines::new(reader));
+        let mut rows = Self { source, cells: Vec::new(), headers: Vec::new(), header_line: 1, line: 1, separator };
         rows.header_line = rows.advance()?.ok_or(CsvProblem::Empty)?;
-        rows.headers = read_headers(&rows.record, rows.header_line, separator)?;
+        rows.headers = read_headers(&rows.row(rows.header_line), separator)?;
         Ok(rows)
     }
 
@@ -101,23 +113,95 @@ impl<R: Read> CsvRows<R> {
     /// `Unreadable`, `LongLine`, `Ragged`.
     pub fn next_row(&mut self) -> Result<Option<CsvRow<'_>>, CsvProblem> {
         let Some(line) = self.advance()? else { return Ok(None) };
-        let Self { headers, record, separator, .. } = self;
-        if record.len() != headers.len() {
-            return Err(CsvProblem::Ragged { line, given: record.len(), wanted: headers.len() });
+        if self.cells.len() != self.headers.len() {
+            return Err(CsvProblem::Ragged { line, given: self.cells.len(), wanted: self.headers.len() });
         }
-        Ok(Some(CsvRow { line, headers, record, decimal_comma: *separator == ';' }))
+        Ok(Some(self.row(line)))
     }
 
-    /// Reads the next record that is not blank; the line it ends on.
+    /// The row that was read last, which ends on `line`.
+    fn row(&self, line: u64) -> CsvRow<'_> {
+        let text = match &self.source {
+            Source::Lines(lines) => lines.text(),
+            Source::Quoted(quoted) => quoted.record.as_slice(),
+            Source::Ended => &[],
+        };
+        let decimal_comma = self.separator == ';';
+        CsvRow { line, headers: &self.headers, text, cells: &self.cells, decimal_comma }
+    }
+
+    /// Reads the next row that is not blank; the line it ends on.
     fn advance(&mut self) -> Result<Option<u64>, CsvProblem> {
-        while self.reader.read_byte_record(&mut self.record).map_err(unreadable)? {
-            if !(self.record.len() == 1 && self.record[0].is_empty()) {
-                self.line = self.reader.position().line() - 1;
-                return Ok(Some(self.line));
+        let separator = u8::try_from(self.separator).unwrap_or(b',');
+        loop {
+            let line = match &mut self.source {
+                Source::Lines(lines) => match lines.split(separator, &mut self.cells).map_err(unreadable)? {
+                    Split::Row(line) => line,
+                    Split::Quotes => {
+                        self.source = match std::mem::replace(&mut self.source, Source::Ended) {
+                            Source::Lines(lines) => Source::Quoted(Quoted::from(lines, separator).into()),
+                            source => source,
+                        };
+                        continue;
+                    }
+                    Split::End => return Ok(None),
+                },
+                Source::Quoted(quoted) => {
+                    match quoted.split(&mut self.cells).map_err(|error| unreadable(io_error(error)))? {
+                        Some(line) => line,
+                        None => return Ok(None),
+                    }
+                }
+                Source::Ended => return Ok(None),
+            };
+            if !(self.cells.len() == 1 && self.cells[0].is_empty()) {
+                self.line = line;
+                return Ok(Some(line));
             }
         }
-        Ok(None)
     }
+}
+
+impl<R: Read> Quoted<R> {
+    /// Goes on where `lines` found the first quote of the file, from the beginning of that line.
+    fn from(lines: Lines<R>, separator: u8) -> Self {
+        let (mut held, reader, before) = lines.into_rest();
+        // Behind a blank line no byte order mark is taken away.
+        held.insert(0, b'\n');
+        let reader = Checked { reader: Cursor::new(held).chain(reader), line: before, length: 0 };
+        // Lines end with a line feed only (a carriage return before it is trimmed), the last one too: so the line that a record
+        // ends on is known, which the crate's own record position does not tell behind blank lines and CRLF.
+        let reader = ::csv::ReaderBuilder::new()
+            .has_headers(false)
+            .delimiter(separator)
+            .comment(Some(b'#'))
+            .flexible(true)
+            .terminator(::csv::Terminator::Any(b'\n'))
+            .from_reader(reader.chain(&b"\n"[..]));
+        Self { reader, record: ::csv::ByteRecord::new(), before }
+    }
+
+    /// Reads the next record; the line it ends on.
+    fn split(&mut self, cells: &mut Vec<Range<usize>>) -> Result<Option<u64>, ::csv::Error> {
+        if !self.reader.read_byte_record(&mut self.record)? {
+            return Ok(None);
+        }
+        let text = self.record.as_slice();
+        cells.clear();
+        cells.extend((0..self.record.len()).filter_map(|k| Some(trimmed(text, self.record.range(k)?))));
+        Ok(Some(self.before + self.reader.position().line() - 2))
+    }
+}
+
+/// A cell without the blanks around it.
+pub(super) fn trimmed(text: &[u8], Range { mut start, mut end }: Range<usize>) -> Range<usize> {
+    while start < end && text[start].is_ascii_whitespace() {
+        start += 1;
+    }
+    while start < end && text[end - 1].is_ascii_whitespace() {
+        end -= 1;
+    }
+    start..end
 }
 
 impl CsvRow<'_> {
@@ -128,7 +212,12 @@ impl CsvRow<'_> {
 
     /// Its cells, without blanks around them and without quotes.
     pub fn cells(&self) -> impl Iterator<Item = &[u8]> {
-        self.record.iter()
+        self.cells.iter().map(|cell| &self.text[cell.clone()])
+    }
+
+    /// One of them. Panics beyond the last one.
+    pub fn cell(&self, index: usize) -> &[u8] {
+        &self.text[self.cells[index].clone()]
     }
 
     /// A cell as text.
@@ -136,7 +225,7 @@ impl CsvRow<'_> {
     /// # Errors
     /// `NotUtf8`.
     pub fn text(&self, index: usize) -> Result<&str, CsvProblem> {
-        let text = std::str::from_utf8(&self.record[index]);
+        let text = std::str::from_utf8(self.cell(index));
         text.map_err(|_| CsvProblem::NotUtf8 { line: self.line, column: index + 1 })
     }
 
@@ -161,12 +250,13 @@ impl CsvRow<'_> {
     }
 }
 
-fn read_headers(record: &::csv::ByteRecord, line: u64, own: char) -> Result<Vec<String>, CsvProblem> {
-    let mut names: Vec<String> = Vec::with_capacity(record.len());
-    for (index, cell) in record.iter().enumerate() {
+fn read_headers(row: &CsvRow<'_>, own: char) -> Result<Vec<String>, CsvProblem> {
+    let (line, count) = (row.line(), row.cells().count());
+    let mut names: Vec<String> = Vec::with_capacity(count);
+    for (index, cell) in row.cells().enumerate() {
         let column = index + 1;
         let name = std::str::from_utf8(cell).map_err(|_| CsvProblem::NotUtf8 { line, column })?;
-        if name.is_empty() && record.len() > 1 {
+        if name.is_empty() && count > 1 {
             return Err(CsvProblem::NoName { line, column });
         }
         if let Some(first) = names.iter().position(|other| other == name) {
@@ -188,26 +278,20 @@ fn read_headers(record: &::csv::ByteRecord, line: u64, own: char) -> Result<Vec<
 }
 
 /// A file none of whose lines is longer than [`MAX_LINE`].
-struct Lines<R> {
+struct Checked<R> {
     reader: R,
     /// From 1.
     line: u64,
     length: u64,
 }
 
-#[derive(Debug, thiserror::Error)]
-#[error("line {line} is too long")]
-struct TooLong {
-    line: u64,
-}
-
-impl<R: Read> Read for Lines<R> {
+impl<R: Read> Read for Checked<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.reader.read(buffer)?;
         for part in buffer[..count].split_inclusive(|byte| *byte == b'\n') {
             self.length += part.len() as u64;
             if self.length > MAX_LINE {
-                return Err(io::Error::other(TooLong { line: self.line }));
+                return Err(io::Error::other(LongLine { line: self.line }));
             }
             if part.ends_with(b"\n") {
                 self.line += 1;
@@ -218,13 +302,16 @@ impl<R: Read> Read for Lines<R> {
     }
 }
 
-fn unreadable(error: ::csv::Error) -> CsvProblem {
-    let source = match error.into_kind() {
+fn io_error(error: ::csv::Error) -> io::Error {
+    match error.into_kind() {
         ::csv::ErrorKind::Io(source) => source,
         other => io::Error::other(format!("{other:?}")),
-    };
-    match source.get_ref().and_then(|inner| inner.downcast_ref::<TooLong>()) {
-        Some(&TooLong { line }) => CsvProblem::LongLine { line, limit: MAX_LINE },
+    }
+}
+
+fn unreadable(source: io::Error) -> CsvProblem {
+    match source.get_ref().and_then(|inner| inner.downcast_ref::<LongLine>()) {
+        Some(&LongLine { line }) => CsvProblem::LongLine { line, limit: MAX_LINE },
         None => CsvProblem::Unreadable { source },
     }
 }

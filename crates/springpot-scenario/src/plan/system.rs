@@ -6,7 +6,7 @@ use crate::robot::described::EndStops;
 use springpot::model::{Anchor, Site};
 use springpot::motion::gripper_path::Course;
 use springpot::observe::Observables;
-use springpot::system::{Stop, System};
+use springpot::system::{Shared, Stop, System};
 use springpot::table::Column;
 use std::collections::HashMap;
 
@@ -35,6 +35,7 @@ impl Plan {
             events: self.events.iter().map(|plan| plan.event.clone()).collect(),
             control: self.motion.control(&self.model, course).into(),
             sensitivity: self.sensitivity.as_ref().and_then(|plan| plan.engine.clone()),
+            shared: Shared::default(),
         };
         self.with_end_stops(system)
     }

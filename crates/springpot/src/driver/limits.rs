@@ -121,6 +121,11 @@ impl LimitWatch {
         Self { time: position(&observables, Quantity::Time), watched }
     }
 
+    /// Whether no joint has a limit.
+    pub fn is_empty(&self) -> bool {
+        self.watched.is_empty()
+    }
+
     /// What was seen so far.
     pub fn seen(&self) -> Watch {
         Watch(self.watched.iter().map(|watched| watched.passed).collect())
@@ -173,7 +178,7 @@ impl System {
     /// # Errors
     /// What keeps a run from starting.
     pub fn first_row(&self, settings: &Settings) -> Result<Vec<f64>, crate::system::error::RunError> {
-        let begun = Simulation::new(self.clone(), settings.clone());
+        let begun = Simulation::at_start(self.clone(), settings.clone());
         if let Ok(snapshot) = begun.and_then(|mut simulation| simulation.snapshot()) {
             return Ok(self.observables().quantities().into_iter().map(|quantity| snapshot.value(quantity)).collect());
         }

@@ -70,10 +70,22 @@ impl Simulation {
     /// [`RunError`] that keeps a run from starting: of its settings, its signals, its elements. An element with a named scheme is refused, which
     /// works on complete motions alone.
     pub fn new(system: impl Into<Arc<System>>, settings: Settings) -> Result<Self, RunError> {
-        let system: Arc<System> = system.into();
+        Self::begun(system.into(), settings, Driver::new)
+    }
+
+    /// One that tells its start and takes no step: its memories have no kernels.
+    pub(super) fn at_start(system: impl Into<Arc<System>>, settings: Settings) -> Result<Self, RunError> {
+        Self::begun(system.into(), settings, Driver::at_start)
+    }
+
+    fn begun(
+        system: Arc<System>,
+        settings: Settings,
+        begin: impl FnOnce(Context, &Settings, &Stop, fn(&Driver)) -> Result<Driver, RunError>,
+    ) -> Result<Self, RunError> {
         system.refuse_schemes()?;
         let stop = Stop::new(false);
-        let mut driver = Driver::new(system.context(), &settings, &stop, |_| {})?;
+        let mut driver = begin(system.context(), &settings, &stop, |_| {})?;
         let mut events = Watch::new(&system, &settings, WatchState::default(), &stop)?;
         events.start(&system, &mut driver)?;
         Ok(Self { system, driver, events, samples: None, sample: 0 })

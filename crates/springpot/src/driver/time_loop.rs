@@ -61,7 +61,7 @@ pub(super) struct Driver {
     /// Laws that are sampled, where there are some.
     pub(super) sampler: Option<Box<Sampler>>,
     /// What the signals do.
-    agenda: Agenda,
+    agenda: Arc<Agenda>,
     longest_step: f64,
     /// Where the last step taken into the past ended.
     t: f64,
@@ -93,20 +93,41 @@ impl Driver {
         stop: &Stop,
         looked_ahead: impl FnOnce(&Self),
     ) -> Result<Self, RunError> {
+        Self::begun(cx, settings, stop, looked_ahead, true)
+    }
+
+    /// As [`Self::new`] of one that takes no step: memories have no kernels.
+    pub(super) fn at_start(
+        cx: Context,
+        settings: &Settings,
+        stop: &Stop,
+        looked_ahead: impl FnOnce(&Self),
+    ) -> Result<Self, RunError> {
+        Self::begun(cx, settings, stop, looked_ahead, false)
+    }
+
+    /// `opens`: whether it goes on from there.
+    fn begun(
+        cx: Context,
+        settings: &Settings,
+        stop: &Stop,
+        looked_ahead: impl FnOnce(&Self),
+        opens: bool,
+    ) -> Result<Self, RunError> {
         let mut driver = Self::unstarted(cx, settings, stop)?;
         looked_ahead(&driver);
-        driver.start(cx)?;
+        driver.start(cx, opens)?;
         if driver.sampler.is_some() {
             // What the first samples say follows from the start without them, and acts at the start.
             driver.sample(cx, 0.0)?;
             let Self { sampler, agenda, .. } = driver;
             driver = Self::with(cx, settings, sampler, agenda)?;
-            driver.start(cx)?;
+            driver.start(cx, opens)?;
         }
         Ok(driver)
     }
 
-    fn start(&mut self, cx: Context) -> Result<(), RunError> {
+    fn start(&mut self, cx: Context, opens: bool) -> Result<(), RunError> {
         let acting = self.acting();
         let cx = Context { sampled: &acting, ..cx };
         self.recorder.equations.begin_control(cx.system, self.recorder.settings.end)?;
@@ -115,6 +136,9 @@ impl Driver {
         }
         let first = self.solver.stepper_mut().start(cx, &mut self.recorder, &self.agenda)?;
         cx.system.check_definite(&self.recorder.evaluations[0].q)?;
+        if !opens {
+            return Ok(());
+        }
         self.recorder.open(cx, first)?;
         self.begin_variation(cx)?;
         let Recorder { equations, variation, settings, .. } = &self.recorder;
@@ -223,14 +247,19 @@ impl Driver {
             Some(_) => {
                 // What such steps pass over without a trace.
                 cx.system.look_for_jumps(settings, stop)?;
-                Agenda::default()
+                Arc::default()
             }
         };
         let sampler = Sampler::of(cx.system, solver.stepper().fixed_step())?;
         Self::with(cx, settings, sampler, agenda)
     }
 
-    fn with(cx: Context, settings: &Settings, sampler: Option<Box<Sampler>>, agenda: Agenda) -> Result<Self, RunError> {
+    fn with(
+        cx: Context,
+        settings: &Settings,
+        sampler: Option<Box<Sampler>>,
+        agenda: Arc<Agenda>,
+    ) -> Result<Self, RunError> {
         let solver = Solver::new(cx, settings)?;
         let longest_step = solver.stepper().longest_step(cx, settings);
         let mut recorder = Recorder::new(cx, settings);

@@ -6,7 +6,7 @@ pub(crate) use variation::LastNode;
 
 use crate::collocation::Nodes;
 use crate::collocation::{MAX_NODES, STAGES};
-use crate::fractional::{Form, KernelError};
+use crate::fractional::{Form, KernelError, Kernels, Shelf};
 use crate::law::{
     Course, Guard, InputValue, LeafState, LocalError, Network, Observation, Point, Power, Powers, Response, Start,
     State, Step, Term, Warmth, When,
@@ -72,6 +72,8 @@ impl MemoryRange {
 #[derive(Debug, Clone)]
 pub struct ElementBank {
     step: StepShape,
+    /// Where memories find what others have made.
+    shelf: Shelf,
     elements: Vec<Banked>,
 }
 
@@ -179,7 +181,12 @@ impl ElementBank {
             },
         };
         let step = StepShape { t: 0.0, h: 0.0, nodes, course: Course::Given };
-        Self { step, elements: laws.into_iter().map(element).collect() }
+        Self { step, shelf: Shelf::default(), elements: laws.into_iter().map(element).collect() }
+    }
+
+    /// Looks its kernels up among those of other banks first.
+    pub(crate) fn share(&mut self, kernels: &Kernels) {
+        self.shelf = Shelf::of(kernels.clone());
     }
 
     /// Number of elements.
@@ -230,7 +237,7 @@ impl ElementBank {
         let kept = self.elements[e].kept.as_mut();
         // The first node of a step asks for the shortest lag.
         let delta = Nodes::Radau.positions()[0].min(self.step.nodes.positions()[0]) * shortest;
-        kept.map_or(Ok(()), |kept| kept.state.open(tolerance, delta, horizon))
+        kept.map_or(Ok(()), |kept| kept.state.open_on(&self.shelf, tolerance, delta, horizon))
     }
 
     /// Begins a step of the size `h` > 0 at time `t`, s.

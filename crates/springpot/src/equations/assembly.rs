@@ -82,6 +82,7 @@ impl Equations {
         let model = &system.model;
         let laws = system.elements.iter().map(|element| element.law.clone()).collect();
         let mut bank = ElementBank::new(laws, Nodes::Radau, Form::Rates);
+        bank.share(system.shared.kernels());
         for (e, element) in system.elements.iter().enumerate() {
             bank.reserve_inputs(e, element.inputs.len());
         }

@@ -8,16 +8,15 @@
 //! have forgotten everything before it (X > 100).
 
 use super::exponentials::{decay, lane_moments, moments};
-use super::kernel::Kernel;
+use super::kernel::{Kernel, KernelError};
 use super::lanes::{Block, LANES, blocks, load, sum};
+use super::shelf::{Modes, Shelf};
 use super::step::{CUBIC, SEXTIC};
-use super::table::Table;
+use super::table::{SLOTS, Table};
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch, f64x8};
 use serde::{Deserialize, Serialize};
-
-/// Lags that are kept ready: the nodes of two alternating step sizes, four at most.
-const SLOTS: usize = 8;
+use std::sync::Arc;
 
 /// Share of the shortest lag of a kernel down to which its tail tells what the modes above do.
 const SETTLED: f64 = 0.25;
@@ -29,17 +28,15 @@ const SURPLUS: usize = 16;
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(from = "Kept", into = "Kept")]
 pub(super) struct History {
-    kernel: Kernel,
-    /// λ and w of the kernel.
-    lambda: Vec<Block>,
-    weight: Vec<Block>,
-    /// [`Kernel::fast_tail`].
-    fast_tail: [f64; 3],
+    /// The exponentials, which alike histories share.
+    modes: Arc<Modes>,
     z: Vec<Block>,
     /// Width and coefficients of the last piece; none before the first.
     last: (f64, Vec<f64>),
-    tables: Vec<Table>,
-    oldest: usize,
+    /// What they make of the lags that were asked for last.
+    tables: Vec<Arc<Table>>,
+    /// Where modes are found that others have made.
+    shelf: Shelf,
 }
 
 /// What of a history outlasts a run: all else follows.
@@ -64,7 +61,7 @@ impl Lag<'_> {
     pub(super) fn weighted<S: Simd>(&self, simd: S, k: usize) -> f64x8<S> {
         match self.table {
             Some(table) => load(simd, &table.weighted[k]),
-            None if self.lag == 0.0 => load(simd, &self.history.weight[k]),
+            None if self.lag == 0.0 => load(simd, &self.history.modes.weight[k]),
             None => {
                 let [lambda, weight, _] = self.history.block(simd, k);
                 weight * decay(lambda * self.lag)
@@ -91,7 +88,7 @@ impl Lag<'_> {
                 (one, psi)
             }
             None => {
-                let x = load(simd, &self.history.lambda[k]) * self.lag;
+                let x = load(simd, &self.history.modes.lambda[k]) * self.lag;
                 let decay = decay(x);
                 (decay, lane_moments(x, decay))
             }
@@ -119,27 +116,45 @@ impl From<Kept> for History {
 impl From<History> for Kept {
     fn from(history: History) -> Self {
         let z = history.modes().to_vec();
-        Self { kernel: history.kernel, z, last: history.last }
+        Self { kernel: history.modes.kernel.clone(), z, last: history.last }
     }
 }
 
 impl History {
     /// Nothing yet.
     pub(super) fn new(kernel: Kernel) -> Self {
-        let z = vec![[0.0; LANES]; kernel.modes().div_ceil(LANES)];
-        let (lambda, weight) = (blocks(&kernel.lambda), blocks(&kernel.weight));
-        let (fast_tail, last) = (kernel.fast_tail(), (0.0, Vec::with_capacity(CUBIC)));
-        Self { kernel, lambda, weight, fast_tail, z, last, tables: Vec::new(), oldest: 0 }
+        let shelf = Shelf::default();
+        Self::of(shelf.modes(kernel), shelf)
+    }
+
+    /// Nothing yet, of a kernel that is found on the shelf or put there ([`Kernel::new`]).
+    ///
+    /// # Errors
+    /// [`KernelError`] where it cannot be built.
+    pub(super) fn open(
+        shelf: &Shelf,
+        alpha: f64,
+        tolerance: f64,
+        delta: f64,
+        horizon: f64,
+    ) -> Result<Self, KernelError> {
+        Ok(Self::of(shelf.built(alpha, tolerance, delta, horizon)?, shelf.clone()))
+    }
+
+    fn of(modes: Arc<Modes>, shelf: Shelf) -> Self {
+        let z = vec![[0.0; LANES]; modes.lambda.len()];
+        Self { modes, z, last: (0.0, Vec::with_capacity(CUBIC)), tables: Vec::new(), shelf }
     }
 
     /// The same kernel, which has seen nothing.
     pub(super) fn without_past(&self) -> Self {
-        Self::new(self.kernel.clone())
+        Self::of(self.modes.clone(), self.shelf.clone())
     }
 
     /// Whether another one has the same kernel.
     pub(super) fn has_kernel_of(&self, other: &Self) -> bool {
-        self.kernel.modes() == other.kernel.modes() && self.kernel.lambda.first() == other.kernel.lambda.first()
+        let [own, other] = [self.kernel(), other.kernel()];
+        own.modes() == other.modes() && own.lambda.first() == other.lambda.first()
     }
 
     /// w e^{−X} of every mode at a lag.
@@ -150,12 +165,12 @@ impl History {
                 at.weighted(simd, k).store_array(block);
             }
         });
-        all.as_flattened()[..self.kernel.modes()].to_vec()
+        all.as_flattened()[..self.kernel().modes()].to_vec()
     }
 
     /// e^{−X}, and ψ_0 … ψ_{N−1}, of every mode at a lag.
     pub(super) fn moments<const N: usize>(&self, lag: f64) -> (Vec<f64>, [Vec<f64>; N]) {
-        let (at, modes) = (self.lag_of(lag, N), self.kernel.modes());
+        let (at, modes) = (self.lag_of(lag, N), self.kernel().modes());
         let none = || vec![[0.0; LANES]; self.z.len()];
         let (mut decays, mut all) = (none(), [(); N].map(|()| none()));
         dispatch!(Level::new(), simd => {
@@ -170,17 +185,17 @@ impl History {
     }
 
     pub(super) fn kernel(&self) -> &Kernel {
-        &self.kernel
+        &self.modes.kernel
     }
 
     /// [`Kernel::fast_tail`] of the modes above those that are kept.
     pub(super) fn fast_tail(&self) -> [f64; 3] {
-        self.fast_tail
+        self.modes.fast_tail
     }
 
     /// z_k, one for each exponential of the kernel.
     pub(super) fn modes(&self) -> &[f64] {
-        &self.z.as_flattened()[..self.kernel.modes()]
+        &self.z.as_flattened()[..self.kernel().modes()]
     }
 
     /// Whether there was no piece yet.
@@ -198,20 +213,22 @@ impl History {
     ///
     /// Gives its place among the tables.
     pub(super) fn prepare(&mut self, lag: f64, count: usize, slack: f64) -> usize {
-        let moments = count * self.z.len();
-        let is_same = |table: &Table| (table.lag - lag).abs() <= slack && table.psi.len() == moments;
-        if let Some(slot) = self.tables.iter().position(is_same) {
+        let blocks = self.z.len();
+        if let Some(slot) = self.tables.iter().position(|table| table.is_of(lag, count * blocks, slack)) {
             return slot;
         }
-        let slot = if self.tables.len() < SLOTS {
-            self.tables.push(Table::empty());
-            self.tables.len() - 1
-        } else {
-            self.oldest = (self.oldest + 1) % SLOTS;
-            self.oldest
+        let Self { modes, tables, .. } = self;
+        let oldest = if tables.len() < SLOTS { Arc::default() } else { tables.remove(0) };
+        // Alone, it fills its own again and again; what others have filled is to the bit what it would.
+        let table = match Arc::strong_count(modes) {
+            1 => modes.fill(oldest, lag, count),
+            _ => {
+                drop(oldest);
+                modes.table(lag, count)
+            }
         };
-        self.tables[slot].fill(lag, count, self.kernel.modes(), [&self.lambda, &self.weight]);
-        slot
+        tables.push(table);
+        tables.len() - 1
     }
 
     /// Σ_k w_k e^{−λ_k τ} z_k: what the past adds at the lag τ, with faster modes where τ is shorter than the kernel's delta.
@@ -220,8 +237,8 @@ impl History {
             return 0.0;
         }
         let mut sum = dispatch!(Level::new(), simd => self.kept_at(simd, lag));
-        for k in 1..=self.kernel.missing(lag) {
-            let (lambda, weight) = self.kernel.faster(k);
+        for k in 1..=self.kernel().missing(lag) {
+            let (lambda, weight) = self.kernel().faster(k);
             sum += weight * (-lambda * lag).exp() * self.fast_mode(lambda);
         }
         sum
@@ -236,7 +253,7 @@ impl History {
                 total += load(simd, weighted) * load(simd, z);
             }
         } else {
-            for ((lambda, weight), z) in self.lambda.iter().zip(&self.weight).zip(&self.z) {
+            for ((lambda, weight), z) in self.modes.lambda.iter().zip(&self.modes.weight).zip(&self.z) {
                 let weighted = load(simd, weight) * decay(load(simd, lambda) * lag);
                 total += weighted * load(simd, z);
             }
@@ -252,7 +269,7 @@ impl History {
                 simd,
                 lag,
                 #[inline(always)]
-                |k, _, [psi, ..]: [_; CUBIC]| total += load(simd, &self.weight[k]) * psi * load(simd, &self.z[k]),
+                |k, _, [psi, ..]: [_; CUBIC]| total += load(simd, &self.modes.weight[k]) * psi * load(simd, &self.z[k]),
             );
             sum(total)
         })
@@ -295,9 +312,9 @@ impl History {
 
     #[inline(always)]
     fn add_squares<S: Simd>(&self, k: usize, z: f64x8<S>, [plain, rated]: &mut [f64x8<S>; 2]) {
-        let square = load(z.simd, &self.weight[k]) * z * z;
+        let square = load(z.simd, &self.modes.weight[k]) * z * z;
         *plain += square;
-        *rated += load(z.simd, &self.lambda[k]) * square;
+        *rated += load(z.simd, &self.modes.lambda[k]) * square;
     }
 
     /// Hands over index, e^{−X} and ψ_0 … ψ_{N−1} of every block.
@@ -341,16 +358,16 @@ impl History {
 
     /// Puts another past in the place of what was seen: z as a function of λ, and the last piece.
     pub(super) fn recall(&mut self, mode: &dyn Fn(f64) -> f64, width: f64, y: &[f64]) {
-        let z: Vec<f64> = self.kernel.lambda.iter().map(|lambda| mode(*lambda)).collect();
-        self.take_modes(&z);
+        let z: Vec<f64> = self.kernel().lambda.iter().map(|lambda| mode(*lambda)).collect();
+        self.z = blocks(&z);
         self.last = (width, y.to_vec());
     }
 
     /// Adds an impulse of y of this size, `age` ago.
     pub(super) fn add_jump(&mut self, jump: f64, age: f64) {
-        let z: Vec<f64> =
-            self.kernel.lambda.iter().zip(self.modes()).map(|(lambda, z)| z + jump * (-lambda * age).exp()).collect();
-        self.take_modes(&z);
+        let modes = self.kernel().lambda.iter().zip(self.modes());
+        let z: Vec<f64> = modes.map(|(lambda, z)| z + jump * (-lambda * age).exp()).collect();
+        self.z = blocks(&z);
         if self.is_empty() {
             self.last = (age, vec![0.0; CUBIC]);
         }
@@ -358,24 +375,21 @@ impl History {
 
     /// Puts the faster modes in front that lags down to `lag` need.
     pub(super) fn extend(&mut self, lag: f64) {
-        let modes = self.kernel.modes();
-        let rates = self.kernel.extend(lag);
-        if rates.is_empty() {
+        if self.kernel().missing(lag) == 0 {
             return;
         }
-        let mut z: Vec<f64> = rates.into_iter().map(|lambda| self.fast_mode(lambda)).collect();
-        z.extend_from_slice(&self.z.as_flattened()[..modes]);
-        self.take_modes(&z);
+        let mut kernel = self.kernel().clone();
+        let mut z: Vec<f64> = kernel.extend(lag).into_iter().map(|lambda| self.fast_mode(lambda)).collect();
+        z.extend_from_slice(self.modes());
+        self.take_modes(kernel, &z);
     }
 
     /// The same with the faster modes that lags down to `lag` need; nothing where it has them, or nearly: under a smooth rate the tail is as good.
     pub(super) fn extended(&self, lag: f64) -> Option<Self> {
-        if lag >= SETTLED * self.kernel.delta {
+        if lag >= SETTLED * self.kernel().delta {
             return None;
         }
-        let (kernel, last) = (self.kernel.clone(), self.last.clone());
-        let (lambda, weight, z) = (self.lambda.clone(), self.weight.clone(), self.z.clone());
-        let mut longer = Self { kernel, last, lambda, weight, z, tables: Vec::new(), ..*self };
+        let mut longer = Self { tables: Vec::new(), ..self.clone() };
         longer.extend(lag);
         Some(longer)
     }
@@ -386,16 +400,17 @@ impl History {
         if surplus == 0 {
             return;
         }
-        let modes = self.kernel.modes();
-        self.kernel.drop_fastest(surplus);
-        let z = self.z.as_flattened()[surplus..modes].to_vec();
-        self.take_modes(&z);
+        let mut kernel = self.kernel().clone();
+        kernel.drop_fastest(surplus);
+        let z = self.modes()[surplus..].to_vec();
+        self.take_modes(kernel, &z);
     }
 
     /// How many modes [`Self::drop_surplus`] drops.
     pub(super) fn surplus(&self, lag: f64) -> usize {
-        let surplus = ((lag / self.kernel.delta).ln() / self.kernel.eta).floor();
-        if surplus < SURPLUS as f64 { 0 } else { (surplus as usize).min(self.kernel.modes() - 1) }
+        let kernel = self.kernel();
+        let surplus = ((lag / kernel.delta).ln() / kernel.eta).floor();
+        if surplus < SURPLUS as f64 { 0 } else { (surplus as usize).min(kernel.modes() - 1) }
     }
 
     /// Width and coefficients of the last piece; none before the first.
@@ -411,7 +426,7 @@ impl History {
     /// The same of a piece with so many coefficients.
     pub(super) fn lag_of(&self, lag: f64, coefficients: usize) -> Lag<'_> {
         let moments = coefficients * self.z.len();
-        let table = self.tables.iter().find(|table| table.lag == lag && table.psi.len() == moments);
+        let table = self.tables.iter().find(|table| table.is_of(lag, moments, 0.0)).map(|table| &**table);
         Lag { history: self, lag, table }
     }
 
@@ -423,12 +438,12 @@ impl History {
     /// λ, w and z of a block.
     #[inline(always)]
     pub(super) fn block<S: Simd>(&self, simd: S, k: usize) -> [f64x8<S>; 3] {
-        [load(simd, &self.lambda[k]), load(simd, &self.weight[k]), load(simd, &self.z[k])]
+        [load(simd, &self.modes.lambda[k]), load(simd, &self.modes.weight[k]), load(simd, &self.z[k])]
     }
 
     /// Appends the state to `numbers`: modes with their rates and weights, and the last piece.
     pub(super) fn save(&self, numbers: &mut Vec<f64>) {
-        let Kernel { lambda, weight, delta, .. } = &self.kernel;
+        let Kernel { lambda, weight, delta, .. } = self.kernel();
         let (width, y) = &self.last;
         numbers.extend([*delta, lambda.len() as f64, y.len() as f64, *width]);
         [lambda, weight, self.modes(), y].into_iter().for_each(|values: &[f64]| numbers.extend_from_slice(values));
@@ -444,19 +459,16 @@ impl History {
         let weight = numbers.split_off(..modes as usize)?;
         let z = numbers.split_off(..modes as usize)?;
         let y = numbers.split_off(..count as usize)?;
-        self.kernel.delta = delta;
-        (self.kernel.lambda, self.kernel.weight) = (lambda.to_vec(), weight.to_vec());
+        let kernel = Kernel { delta, lambda: lambda.to_vec(), weight: weight.to_vec(), ..self.kernel().clone() };
         self.last = (width, y.to_vec());
-        self.take_modes(z);
+        self.take_modes(kernel, z);
         Some(())
     }
 
-    /// Goes on with these numbers for the modes of the kernel, which has changed.
-    fn take_modes(&mut self, z: &[f64]) {
+    /// Goes on with another kernel, and these numbers for its modes.
+    fn take_modes(&mut self, kernel: Kernel, z: &[f64]) {
         self.z = blocks(z);
-        self.lambda = blocks(&self.kernel.lambda);
-        self.weight = blocks(&self.kernel.weight);
-        self.fast_tail = self.kernel.fast_tail();
+        self.modes = self.shelf.modes(kernel);
         self.tables.clear();
     }
 

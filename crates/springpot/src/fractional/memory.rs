@@ -1,7 +1,7 @@
 //! The memory of one fractional derivative in a time loop: what is kept of the past, and how a step adds to it.
 //!
 //! Within the current step the kernel is exact (see [`super::step`]); only the past goes through the exponentials of
-//! [`Kernel`], one lag z_k = ∫₀ᵗ e^{−λ_k(t−s)} x'(s) ds for each. Asking is pure; [`Memory::commit`] is the only
+//! [`Kernel`](super::Kernel), one lag z_k = ∫₀ᵗ e^{−λ_k(t−s)} x'(s) ds for each. Asking is pure; [`Memory::commit`] is the only
 //! mutation.
 //!
 //! A step from t_n to t_n + h has nodes c_1 … c_s. [`Memory::respond`] gives D^alpha x there as an affine map of what
@@ -37,9 +37,10 @@
 
 use super::gamma::reciprocal_gamma;
 use super::history::{History, Squares};
-use super::kernel::{Kernel, KernelError};
+use super::kernel::KernelError;
 use super::kind::Kind;
 use super::local::{Both, Local};
+use super::shelf::Shelf;
 use super::step::{Form, RatePolynomial, SEXTIC};
 use crate::collocation::{MAX_NODES, NODE_POLYNOMIAL, Nodes, Places};
 use serde::{Deserialize, Serialize};
@@ -191,8 +192,19 @@ impl Memory {
     /// # Errors
     /// [`KernelError`] where no kernel can be built.
     pub fn open(&mut self, tolerance: f64, delta: f64, horizon: f64) -> Result<(), KernelError> {
+        self.open_on(&Shelf::default(), tolerance, delta, horizon)
+    }
+
+    /// As [`Self::open`], on the shelf of other memories.
+    pub(crate) fn open_on(
+        &mut self,
+        shelf: &Shelf,
+        tolerance: f64,
+        delta: f64,
+        horizon: f64,
+    ) -> Result<(), KernelError> {
         if self.is_fractional() && self.past.is_none() {
-            self.past = Some(History::new(Kernel::new(self.alpha, tolerance, delta.min(0.5 * horizon), horizon)?));
+            self.past = Some(History::open(shelf, self.alpha, tolerance, delta.min(0.5 * horizon), horizon)?);
         }
         Ok(())
     }

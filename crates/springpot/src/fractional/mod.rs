@@ -70,6 +70,7 @@ pub mod memory;
 pub mod mittag_leffler;
 pub mod prony;
 pub mod scheme;
+mod shelf;
 mod slopes;
 pub mod step;
 mod table;
@@ -82,6 +83,8 @@ pub use differintegral::{
 pub use kernel::{Kernel, KernelError};
 pub use kind::Kind;
 pub use memory::{Affine, Energy, Memory, StepStart};
+pub use shelf::Kernels;
+pub(crate) use shelf::Shelf;
 pub(crate) use step::SEXTIC;
 pub use step::{Form, RatePolynomial};
 pub use tangent::{

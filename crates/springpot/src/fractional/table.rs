@@ -6,6 +6,9 @@ use super::step::{CUBIC, SEXTIC};
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch, f64x8};
 
+/// Lags that are kept ready: the nodes of two alternating step sizes, four at most.
+pub(super) const SLOTS: usize = 8;
+
 /// e^{−X}, w e^{−X} and ψ_p(X) of every mode for one lag.
 #[derive(Debug, Clone)]
 pub(super) struct Table {
@@ -16,9 +19,17 @@ pub(super) struct Table {
     pub(super) psi: Vec<Block>,
 }
 
-impl Table {
-    pub(super) fn empty() -> Self {
+impl Default for Table {
+    /// Of no lag.
+    fn default() -> Self {
         Self { lag: f64::NAN, decay: Vec::new(), weighted: Vec::new(), psi: Vec::new() }
+    }
+}
+
+impl Table {
+    /// Whether it is that of a lag, with so many blocks of moments; lags that differ by no more than `slack` are one.
+    pub(super) fn is_of(&self, lag: f64, moments: usize, slack: f64) -> bool {
+        (self.lag - lag).abs() <= slack && self.psi.len() == moments
     }
 
     /// For `count` moments of the modes with these rates and weights, 0 beyond the first `modes` of them.

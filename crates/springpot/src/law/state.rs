@@ -1,7 +1,7 @@
 //! What a law keeps between steps.
 
 use super::network::Ready;
-use crate::fractional::{KernelError, Memory};
+use crate::fractional::{KernelError, Memory, Shelf};
 use serde::{Deserialize, Serialize};
 
 /// How much of a [`State`] belongs to one leaf.
@@ -62,7 +62,18 @@ impl State {
     /// # Errors
     /// [`KernelError`] where one cannot be built.
     pub fn open(&mut self, tolerance: f64, delta: f64, horizon: f64) -> Result<(), KernelError> {
-        self.memories.iter_mut().try_for_each(|memory| memory.open(tolerance, delta, horizon))
+        self.open_on(&Shelf::default(), tolerance, delta, horizon)
+    }
+
+    /// As [`Self::open`], on the shelf of other states.
+    pub(crate) fn open_on(
+        &mut self,
+        shelf: &Shelf,
+        tolerance: f64,
+        delta: f64,
+        horizon: f64,
+    ) -> Result<(), KernelError> {
+        self.memories.iter_mut().try_for_each(|memory| memory.open_on(shelf, tolerance, delta, horizon))
     }
 
     /// The memories, in the order of the leaves.

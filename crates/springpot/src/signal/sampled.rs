@@ -54,6 +54,18 @@ pub(super) struct Samples {
 }
 
 impl Samples {
+    /// Whether it goes through the same samples in the same way.
+    pub(super) fn is_same(&self, other: &Self) -> bool {
+        let Self { times, values, bends, held } = self;
+        let is_same = |own: &[f64], other: &[f64]| {
+            own.len() == other.len() && own.iter().zip(other).all(|(own, other)| own.to_bits() == other.to_bits())
+        };
+        *held == other.held
+            && is_same(times, &other.times)
+            && is_same(values, &other.values)
+            && is_same(bends, &other.bends)
+    }
+
     pub(super) fn linear(times: &[f64], values: &[f64]) -> Result<Self, SampleError> {
         check(times, values)?;
         Ok(Self { times: times.to_vec(), values: values.to_vec(), bends: Vec::new(), held: false })

@@ -9,6 +9,7 @@ pub(crate) mod jump;
 pub(crate) mod row_times;
 pub mod sensitivity;
 pub(crate) mod settings;
+mod shared;
 mod signals;
 
 pub use error::RunError;
@@ -16,6 +17,7 @@ pub use event::{Action, Direction, Event, Setting};
 pub use fixed_step::FixedStep;
 pub use row_times::RowTimes;
 pub use settings::{Settings, Stop};
+pub use shared::Shared;
 
 use sensitivity::Sensitivity;
 
@@ -49,6 +51,8 @@ pub struct System {
     pub control: Arc<Control>,
     /// By what its runs are differentiated; `None`: by nothing.
     pub sensitivity: Option<Arc<Sensitivity>>,
+    /// What it has in common with others.
+    pub shared: Shared,
 }
 
 /// Whether motion or forces are given.
@@ -93,7 +97,14 @@ impl System {
             events: Vec::new(),
             control: Arc::default(),
             sensitivity: None,
+            shared: Shared::default(),
         }
+    }
+
+    /// The same, which looks up with others what they have in common.
+    #[must_use]
+    pub fn sharing(self, shared: &Shared) -> Self {
+        Self { shared: shared.clone(), ..self }
     }
 
     /// What can be observed of it, in the order of a run's rows.

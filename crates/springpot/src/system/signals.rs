@@ -5,6 +5,7 @@ use super::jump::refuse_jumps;
 use super::settings::Settings;
 use super::{Motion, System};
 use crate::signal::{Agenda, AgendaError, Signal, Watched};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Share of a signal's range that may stay unseen between the nodes of a step, in units of rtol and within these bounds: what is
@@ -47,13 +48,14 @@ impl System {
     ///
     /// # Errors
     /// [`RunError`] where a signal changes more often than the run may take steps, or the run is interrupted.
-    pub(crate) fn agenda(&self, settings: &Settings, longest: f64, stop: &AtomicBool) -> Result<Agenda, RunError> {
+    pub(crate) fn agenda(&self, settings: &Settings, longest: f64, stop: &AtomicBool) -> Result<Arc<Agenda>, RunError> {
         let named = self.watched();
         let watched: Vec<Watched> = named.iter().map(|(_, watched)| *watched).collect();
         let [least, most] = UNSEEN_BOUNDS;
         let tolerance = (UNSEEN * settings.rtol).clamp(least, most);
         let most = settings.most_kinks();
-        let agenda = Agenda::new(&watched, settings.end, tolerance, most, Some(stop)).map_err(|error| match error {
+        let found = self.shared.look(&watched, (settings.end, tolerance, most), stop);
+        let agenda = found.map_err(|error| match error {
             AgendaError::Interrupted => RunError::Interrupted { t: 0.0 },
             AgendaError::TooBusy { signal, times } => {
                 RunError::TooBusy { what: named[signal].0.clone(), times, limit: most }
@@ -150,7 +152,7 @@ impl System {
             return Ok(());
         }
         for (what, signal) in controlled.reference.trajectory().named_signals(&self.model) {
-            if let Some((t, [before, after])) = first_jump(&what, signal, settings, stop)? {
+            if let Some((t, [before, after])) = self.first_jump(&what, signal, settings, stop)? {
                 let what = what.replace("the motion of ", "");
                 return Err(RunError::ReferenceJump { t, what, jump: after - before });
             }
@@ -162,7 +164,7 @@ impl System {
     fn look_for_jumps_of_heat(&self, settings: &Settings, stop: &AtomicBool) -> Result<(), RunError> {
         for element in &self.elements {
             let Some(signal) = element.law.stretched_by().and_then(|input| element.inputs.get(input)) else { continue };
-            if let Some((t, [before, after])) = first_jump("a temperature", signal, settings, stop)? {
+            if let Some((t, [before, after])) = self.first_jump("a temperature", signal, settings, stop)? {
                 return Err(RunError::heat_jump(t, &element.name, before, after));
             }
         }
@@ -247,41 +249,42 @@ impl System {
         }
         watched
     }
-}
 
-/// When a signal first jumps, and its values on both sides; its first kinks are looked at, up to a number of them.
-fn first_jump(
-    what: &str,
-    signal: &Signal,
-    settings: &Settings,
-    stop: &AtomicBool,
-) -> Result<Option<(f64, [f64; 2])>, RunError> {
-    if !is_function(signal) {
-        return Ok(None);
-    }
-    let watched = [Watched { signal, is_position: true, slack: 1.0 }];
-    let most = settings.most_kinks();
-    let agenda =
-        Agenda::new(&watched, settings.end, UNSEEN_BOUNDS[1], most, Some(stop)).map_err(|error| match error {
+    /// When a signal first jumps, and its values on both sides; its first kinks are looked at, up to a number of them.
+    fn first_jump(
+        &self,
+        what: &str,
+        signal: &Signal,
+        settings: &Settings,
+        stop: &AtomicBool,
+    ) -> Result<Option<(f64, [f64; 2])>, RunError> {
+        if !is_function(signal) {
+            return Ok(None);
+        }
+        let watched = [Watched { signal, is_position: true, slack: 1.0 }];
+        let most = settings.most_kinks();
+        let found = self.shared.look(&watched, (settings.end, UNSEEN_BOUNDS[1], most), stop);
+        let agenda = found.map_err(|error| match error {
             AgendaError::Interrupted => RunError::Interrupted { t: 0.0 },
             AgendaError::TooBusy { times, .. } => RunError::TooBusy { what: what.to_owned(), times, limit: most },
         })?;
-    let mut t = 0.0;
-    for _ in 0..MOST_LOOKED_AT {
-        let Some(kink) = agenda.next_stop(t).filter(|stop| stop.before < settings.end) else { break };
-        if stop.load(Ordering::Relaxed) {
-            return Err(RunError::Interrupted { t: 0.0 });
+        let mut t = 0.0;
+        for _ in 0..MOST_LOOKED_AT {
+            let Some(kink) = agenda.next_stop(t).filter(|stop| stop.before < settings.end) else { break };
+            if stop.load(Ordering::Relaxed) {
+                return Err(RunError::Interrupted { t: 0.0 });
+            }
+            let after = kink.after.unwrap_or(kink.before).max(t.next_up());
+            let [left, right] = [kink.before, after].map(|at| signal.at(at));
+            let reach = 2.0 * (after - kink.before) * (left.first.abs() + right.first.abs());
+            let rounding = STILL * (left.value.abs() + right.value.abs());
+            if (right.value - left.value).abs() > reach + rounding {
+                return Ok(Some((after, [left.value, right.value])));
+            }
+            t = after;
         }
-        let after = kink.after.unwrap_or(kink.before).max(t.next_up());
-        let [left, right] = [kink.before, after].map(|at| signal.at(at));
-        let reach = 2.0 * (after - kink.before) * (left.first.abs() + right.first.abs());
-        let rounding = STILL * (left.value.abs() + right.value.abs());
-        if (right.value - left.value).abs() > reach + rounding {
-            return Ok(Some((after, [left.value, right.value])));
-        }
-        t = after;
+        Ok(None)
     }
-    Ok(None)
 }
 
 fn is_function(signal: &Signal) -> bool {

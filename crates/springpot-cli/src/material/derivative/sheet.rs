@@ -99,8 +99,7 @@ impl Layout {
 
     /// The row's cells as they are written, time first.
     pub(super) fn text(&self, row: &CsvRow, text: &mut Vec<u8>) {
-        let cells: Vec<&[u8]> = row.cells().collect();
-        push_cells(text, self.written.iter().map(|column| cells[*column]));
+        push_cells(text, self.written.iter().map(|column| row.cell(*column)));
     }
 
     /// The time, which must follow `before`.

@@ -8,6 +8,9 @@ use springpot_scenario::csv::CsvRows;
 use std::collections::VecDeque;
 use std::io::{Read, Write};
 
+/// Bytes of rows that are written before their room is used again.
+const WAITING: usize = 1 << 16;
+
 /// Goes on from the rows that are `held`, and then as they are read.
 pub(super) fn differentiate(
     layout: &Layout,
@@ -18,20 +21,22 @@ pub(super) fn differentiate(
     let mut writer = Writer::new(layout, output)?;
     for row in 0..held.times.len() {
         let values = held.values.iter().map(|column| column[row]);
-        let pushed = writer.push(held.times[row], values, held.row_text(row).to_vec());
+        let pushed = writer.push(held.times[row], values, |text| text.extend_from_slice(held.row_text(row)));
         pushed.map_err(|problem| at_line(held.line(row), problem))?;
     }
     drop(held);
+    let mut values = Vec::with_capacity(layout.count());
     while let Some(row) = rows.next_row()? {
         if !layout.takes(&row) {
             continue;
         }
         let time = layout.time(&row, writer.last)?;
-        let values = layout.values(&row).collect::<Result<Vec<_>, _>>()?;
-        let mut text = Vec::new();
-        layout.text(&row, &mut text);
-        let line = row.line();
-        writer.push(time, values.into_iter(), text).map_err(|problem| at_line(line, problem))?;
+        values.clear();
+        for value in layout.values(&row) {
+            values.push(value?);
+        }
+        let pushed = writer.push(time, values.iter().copied(), |text| layout.text(&row, text));
+        pushed.map_err(|problem| at_line(row.line(), problem))?;
     }
     writer.finish(rows.line())
 }
@@ -54,7 +59,9 @@ struct Writer<'a> {
     orders: usize,
     /// Values that are known, in the order of the streams; all streams are as far.
     known: Vec<Vec<f64>>,
-    waiting: VecDeque<Vec<u8>>,
+    waiting: Waiting,
+    /// The derivatives of a row as they are written.
+    cells: String,
     first: f64,
     last: Option<f64>,
     taken: usize,
@@ -72,20 +79,27 @@ impl<'a> Writer<'a> {
             streams,
             orders: layout.orders.len(),
             known,
-            waiting: VecDeque::new(),
+            waiting: Waiting::default(),
+            cells: String::new(),
             first: 0.0,
             last: None,
             taken: 0,
         })
     }
 
-    fn push(&mut self, time: f64, values: impl Iterator<Item = f64>, text: Vec<u8>) -> Result<(), Problem> {
+    /// Takes a row, whose own cells are put by `text`.
+    fn push(
+        &mut self,
+        time: f64,
+        values: impl Iterator<Item = f64>,
+        text: impl FnOnce(&mut Vec<u8>),
+    ) -> Result<(), Problem> {
         if self.last.is_none() {
             self.first = time;
         }
         self.last = Some(time);
         self.taken += 1;
-        self.waiting.push_back(text);
+        self.waiting.push(text);
         let streams = self.streams.chunks_mut(self.orders).zip(self.known.chunks_mut(self.orders));
         for (value, (streams, known)) in values.zip(streams) {
             for (stream, known) in streams.iter_mut().zip(known) {
@@ -108,18 +122,45 @@ impl<'a> Writer<'a> {
 
     /// Writes the rows whose derivatives are known.
     fn write(&mut self) -> Result<(), Problem> {
-        let mut cells = String::new();
         for row in 0..self.known[0].len() {
             if let Some(header) = self.header.take() {
                 self.output.write_all(&header)?;
             }
-            let text = self.waiting.pop_front().expect("a row for every value");
-            cells.clear();
-            push_fields(&mut cells, self.known.iter().map(|values| values[row]));
-            cells.push('\n');
-            self.output.write_all(&text)?;
-            self.output.write_all(cells.as_bytes())?;
+            self.cells.clear();
+            push_fields(&mut self.cells, self.known.iter().map(|values| values[row]));
+            self.cells.push('\n');
+            self.output.write_all(self.waiting.pop())?;
+            self.output.write_all(self.cells.as_bytes())?;
         }
         Ok(())
+    }
+}
+
+/// The texts of rows that wait, first come first gone, in one buffer.
+#[derive(Default)]
+struct Waiting {
+    text: Vec<u8>,
+    /// Where they end.
+    ends: VecDeque<usize>,
+    /// Where the first of them begins.
+    start: usize,
+}
+
+impl Waiting {
+    fn push(&mut self, put: impl FnOnce(&mut Vec<u8>)) {
+        if self.start > WAITING {
+            self.text.drain(..self.start);
+            self.ends.iter_mut().for_each(|end| *end -= self.start);
+            self.start = 0;
+        }
+        put(&mut self.text);
+        self.ends.push_back(self.text.len());
+    }
+
+    /// Panics where none waits.
+    fn pop(&mut self) -> &[u8] {
+        let (start, end) = (self.start, self.ends.pop_front().expect("a row for every value"));
+        self.start = end;
+        &self.text[start..end]
     }
 }

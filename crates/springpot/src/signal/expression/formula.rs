@@ -51,6 +51,15 @@ impl Expression {
         Ok(Self { source: source.to_owned(), program, kinks })
     }
 
+    /// Whether it has the same operations on the same bits.
+    pub(in crate::signal) fn is_same(&self, other: &Self) -> bool {
+        let is_same = |(own, other): (&Op, &Op)| match (own, other) {
+            (Op::Number(own), Op::Number(other)) => own.to_bits() == other.to_bits(),
+            (own, other) => own == other,
+        };
+        self.program.len() == other.program.len() && self.program.iter().zip(&other.program).all(is_same)
+    }
+
     /// Its sign, as an expression with a kink wherever it passes zero.
     pub(in crate::signal) fn sign(&self) -> Self {
         let mut program = self.program.clone();
