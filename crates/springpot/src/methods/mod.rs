@@ -1,8 +1,11 @@
-//! How steps are taken: along kinematics given in advance (`prescribed`), in forward dynamics by Radau IIA(5) (`radau`), and in steps of one
-//! size ([`fixed`]).
+//! How steps are taken: along kinematics given in advance (`prescribed`), in forward dynamics by Radau IIA(5) (`radau`) or a method of
+//! order 8 (`explicit`), and in steps of one size ([`fixed`]).
 
+mod explicit;
 pub mod fixed;
 mod prescribed;
 mod radau;
 pub(crate) mod solver;
 pub(crate) mod stepper;
+
+pub use explicit::Unfit;

@@ -15,7 +15,7 @@ pub use error::RunError;
 pub use event::{Action, Direction, Event, Setting};
 pub use fixed_step::FixedStep;
 pub use row_times::RowTimes;
-pub use settings::{Settings, Stop};
+pub use settings::{Adaptive, Settings, Stop};
 
 use sensitivity::Sensitivity;
 
