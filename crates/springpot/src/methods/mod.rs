@@ -7,5 +7,3 @@ mod prescribed;
 mod radau;
 pub(crate) mod solver;
 pub(crate) mod stepper;
-
-pub use explicit::Unfit;

@@ -264,7 +264,7 @@ pub enum RunError {
     },
     /// The explicit method was asked for, which is not for this system.
     #[error("solver.method = \"explicit\": {0}; leave it out, and the run chooses")]
-    NotExplicit(#[from] crate::methods::Unfit),
+    NotExplicit(#[from] super::explicit::Unfit),
     /// The explicit method was asked for, and stability keeps its steps short.
     #[error(
         "t = {} s: the motion is stiff: stability, not accuracy, keeps explicit steps at {h:.1e} s; leave out \

@@ -3,8 +3,7 @@
 use super::{SPRING_DAMPER, apart, chain, run, system};
 use crate::support::run_system;
 use springpot::Simulation;
-use springpot::methods::Unfit;
-use springpot::system::{Adaptive, RowTimes, RunError, Settings};
+use springpot::system::{Adaptive, RowTimes, RunError, Settings, Unfit};
 
 /// Damping of the first joint that grows a million times about t = 1 s and goes back about t = 2 s.
 fn turning_stiff() -> String {

@@ -7,12 +7,10 @@
 
 mod attempt;
 mod between;
-mod choice;
 mod method;
 mod radius;
 mod step;
 mod stiffness;
 mod tableau;
 
-pub use choice::Unfit;
 pub(crate) use method::{Explicit, StepperState};

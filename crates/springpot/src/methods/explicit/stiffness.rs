@@ -24,6 +24,10 @@ const ENOUGH: u32 = 4;
 const MEAN: f64 = 0.25;
 const SMALL: f64 = 1e-6;
 
+/// Explicit steps after which the other method is tried in any case: more each time in vain. Where a motion is led along smoothly, the estimates of the
+/// explicit method ask for more than they need.
+const EXPLORE: u32 = 150;
+
 /// Steps in which a method that is tried finds its size, and those by which its work is measured.
 const WARM: u32 = 8;
 const WINDOW: u32 = 16;
@@ -170,7 +174,11 @@ impl Explicit {
                 }
                 is_over && h * spectral_radius(equations) <= EDGE
             } else {
-                kept.count_stiff(stiffness, NEAR, t)
+                let due = EXPLORE.saturating_mul(kept.patience[0]);
+                if kept.taken == due - WINDOW {
+                    kept.begin_work(t);
+                }
+                kept.count_stiff(stiffness, NEAR, t) || kept.taken >= due
             };
             if is_due {
                 kept.other_rate = kept.work.rate(t);

@@ -1,9 +1,10 @@
-//! Which systems the explicit method is for.
+//! Which systems explicit steps are for.
 
-use crate::equations::resistance::holding_forces;
-use crate::system::{Motion, System};
+use super::{Motion, System};
+use crate::elements::Element;
+use crate::model::FrictionLaw;
 
-/// Why the explicit method is not for a system.
+/// Why explicit steps are not for a system.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Unfit {
     /// The force of an element hangs on what was: a springpot, a part in series, a state of its own, a temperature.
@@ -30,17 +31,19 @@ pub enum Unfit {
 }
 
 impl System {
-    /// Whether [`Adaptive::Explicit`](crate::system::Adaptive::Explicit) is for it.
+    /// Whether [`Adaptive::Explicit`](super::Adaptive::Explicit) is for it.
     ///
     /// # Errors
     /// [`Unfit`].
     pub fn fits_explicit(&self) -> Result<(), Unfit> {
-        let keeping = |element: &&crate::elements::Element| element.scheme.is_some() || !element.law.keeps_nothing();
+        let keeping = |element: &&Element| element.scheme.is_some() || !element.law.keeps_nothing();
         if let Some(element) = self.elements.iter().find(keeping) {
             return Err(Unfit::Keeps { element: element.name.clone() });
         }
-        if let Some(k) = holding_forces(&self.model).iter().position(|force| *force > 0.0) {
-            return Err(Unfit::Sticks { joint: self.model.v_labels()[k].name.clone() });
+        let model = &self.model;
+        let sticks = |j: &usize| model.friction()[*j] > 0.0 && model.friction_laws()[*j] == FrictionLaw::Sticking;
+        if let Some(j) = (0..model.joint_count()).find(sticks) {
+            return Err(Unfit::Sticks { joint: model.v_labels()[model.v_range(j).start].name.clone() });
         }
         if self.control.controller.as_ref().is_some_and(|controlled| !controlled.law.error_terms().is_empty()) {
             return Err(Unfit::Remembers);
