@@ -1,8 +1,11 @@
 //! The same motion as implicit steps find, and energies that balance.
 
 use super::{BENDING, SPRING_DAMPER, apart, cases, chain, floating, run, system};
-use crate::support::run_case;
+use crate::support::forward::{every, slider, state};
+use crate::support::run_system;
+use springpot::Simulation;
 use springpot::system::{Adaptive, Settings};
+use std::f64::consts::PI;
 
 #[test]
 fn energies_balance_within_the_tolerance() {
@@ -57,7 +60,7 @@ fn what_else_acts_does_as_in_implicit_steps() {
         let plan = cases.plan(0).expect("a plan");
         let run = |adaptive: Adaptive| {
             let settings = Settings { adaptive, ..plan.settings.clone() };
-            crate::support::run_system(&plan.system(), &settings)
+            run_system(&plan.system(), &settings)
         };
         let [implicit, explicit] = [Adaptive::Radau, Adaptive::Either].map(run);
         let error = [&implicit, &explicit].map(|run| run.error.as_ref().map(ToString::to_string));
@@ -73,5 +76,54 @@ fn what_else_acts_does_as_in_implicit_steps() {
         assert!(apart < 3e-6, "{name}: {apart:e}");
         assert!(explicit.residual() < 1e-7, "{name}: {:e}", explicit.residual());
     }
-    _ = run_case;
+}
+
+/// A robot from its file, with a joint that follows another one, is let go on two struts.
+#[test]
+fn a_robot_let_go_falls_as_in_implicit_steps() {
+    let strut = |name: &str, ends: &str, rest: f64| {
+        format!(
+            "[[element]]\nname = \"{name}\"\n{ends}\nrest_length = {rest}\nlaw = \"kelvin-voigt\"\nparameters = {{ k = 400, c = 30 }}\n"
+        )
+    };
+    let text = String::from(
+        "[robot]\nurdf = \"robots/panda.urdf\"\naccept = [\"unknown-attribute\", \"mesh-not-found\", \"not-used\"]\n",
+    ) + &strut(
+        "strut",
+        "from = { body = \"world\", point = [0.35, 0.1, 0] }\nto = { body = \"panda_link4\", point = [0, 0, 0.1] }",
+        0.78,
+    ) + &strut(
+        "elbow",
+        "from = { body = \"panda_link2\", point = [0.04, -0.14, 0] }\nto = { body = \"panda_link4\", point = [-0.02, 0.18, 0] }",
+        0.25,
+    ) + "[motion]\nkind = \"forward\"\nstart = { q = { panda_joint2 = -0.35, panda_joint4 = -1.92, panda_joint6 = 1.75 } }\n";
+    let system = system(&text, 0.6);
+    let [implicit, explicit] =
+        [Adaptive::Radau, Adaptive::Either].map(|adaptive| run(&system, 0.6, &[0.2, 0.4, 0.6], adaptive, 1e-9));
+    let apart = apart(&implicit, &explicit);
+    println!("{apart:.1e}, {} steps and {}", implicit.report.steps, explicit.report.steps);
+    assert!(apart < 1e-6 && explicit.residual() < 1e-8, "{apart:e} {:e}", explicit.residual());
+    assert!(3 * explicit.report.steps < implicit.report.steps, "{:?}", explicit.report);
+}
+
+/// q = cos t passes ½ at π/3 and 5π/3, and 0 with the velocity −1 at π/2.
+#[test]
+fn events_are_met_to_twelve_digits() {
+    let text = slider("1", 0.0, "law = \"spring\"\nparameters = { k = 1 }", &state("1", "0"))
+        + "[[event]]\nname = \"half\"\nwhen = \"q.q - 0.5\"\n[[event]]\nname = \"zero\"\nwhen = \"q.q\"\n"
+        + &every(6.0, 6.0, 1e-13);
+    let plan = cases(&text).plan(0).expect("a plan");
+    let settings = Settings { adaptive: Adaptive::Explicit, ..plan.settings.clone() };
+    let mut simulation = Simulation::new(plan.system(), settings).expect("a simulation");
+    let mut times = Vec::new();
+    while simulation.step().expect("a step") {
+        times.extend(simulation.passed().map(|(_, t)| t));
+    }
+    let exact = [PI / 3.0, PI / 2.0, 1.5 * PI, 5.0 * PI / 3.0];
+    assert_eq!(times.len(), exact.len(), "{times:?}");
+    for (t, exact) in times.iter().zip(exact) {
+        println!("{:.1e}", t - exact);
+        assert!((t - exact).abs() < 1e-12, "{t} {exact}");
+    }
+    assert!(simulation.report().steps < 80, "{:?}", simulation.report());
 }
