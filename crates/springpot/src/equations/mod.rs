@@ -3,7 +3,6 @@
 mod accelerations;
 mod ahead;
 mod assembly;
-mod at_once;
 pub(crate) mod context;
 pub(crate) mod control;
 pub(crate) mod coulomb;
@@ -27,10 +26,9 @@ mod tangent;
 mod variation;
 pub(crate) mod zero;
 
-pub(crate) use accelerations::{ElementAtStart, solve_mass};
+pub(crate) use accelerations::{AtOnce, ElementAtStart, OWN_POWERS, solve_mass};
 pub(crate) use ahead::Outlook;
 pub(crate) use assembly::Equations;
-pub(crate) use at_once::{AtOnce, OWN_POWERS};
 pub(crate) use guards::{Change, Look, Solved, Within};
 pub(crate) use node::{Node, Origin};
 pub(crate) use one_node::{OneNode, Place};

@@ -28,7 +28,8 @@ pub(super) struct Place {
 
 /// A step from an [`Origin`].
 ///
-/// What is integrated are ξ, the tangent vector from the start with q = q_0 ⊕ ξ, by its rate J_r(ξ)⁻¹ v; v; and the works of [`Works`], by the powers.
+/// What is integrated are ξ, the tangent vector from the start with q = q_0 ⊕ ξ, by its rate J_r(ξ)⁻¹ v; v; and the works of [`Works`], by the
+/// powers.
 /// Rows of `slopes` and `terms` hold these, one behind the other.
 #[derive(Debug)]
 pub(super) struct ExplicitStep {

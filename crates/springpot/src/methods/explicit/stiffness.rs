@@ -17,15 +17,15 @@ const EDGE: f64 = 6.1;
 const STIFF_STEPS: u32 = 15;
 const OTHERS: u32 = 6;
 
-/// Accepted steps from one look at how fast the motion answers to the next, looks that tell nothing yet, the share of each in the mean, and how far off the
-/// way a look goes in units of what moves.
+/// Accepted steps from one look at how fast the motion answers to the next, looks that tell nothing yet, the share of each in the mean, and how
+/// far off the way a look goes in units of what moves.
 const EVERY: u64 = 4;
 const ENOUGH: u32 = 4;
 const MEAN: f64 = 0.25;
 const SMALL: f64 = 1e-6;
 
-/// Explicit steps after which the other method is tried in any case: more each time in vain. Where a motion is led along smoothly, the estimates of the
-/// explicit method ask for more than they need.
+/// Explicit steps after which the other method is tried in any case: more each time in vain. Where a motion is led along smoothly, the estimates
+/// of the explicit method ask for more than they need.
 const EXPLORE: u32 = 150;
 
 /// Steps in which a method that is tried finds its size, and those by which its work is measured.
@@ -133,7 +133,8 @@ impl Explicit {
         Ok(())
     }
 
-    /// Counts in the step that was accepted, which ended at t, and changes to the other method where that has become worth it; `end` is that of the run.
+    /// Counts in the step that was accepted, which ended at t, and changes to the other method where that has become worth it; `end` is that of
+    /// the run.
     ///
     /// # Errors
     /// [`RunError::TooStiff`] where it must not.

@@ -1,14 +1,14 @@
 //! Accelerations from places and velocities of one time, where no law keeps anything: what explicit methods ask.
 
-use super::assembly::Equations;
-use super::context::Context;
-use super::control::Eye;
-use super::drives::force_at;
-use super::resistance::{add_smooth_resistance, joint_loss};
-use super::solve::Solve;
 use crate::collocation::STAGES;
 use crate::dynamics::{Kinematics, Workspace, crba_into};
 use crate::elements::{Forces, Pull, Reading};
+use crate::equations::assembly::Equations;
+use crate::equations::context::Context;
+use crate::equations::control::Eye;
+use crate::equations::drives::force_at;
+use crate::equations::resistance::{add_smooth_resistance, joint_loss};
+use crate::equations::solve::Solve;
 use crate::law::Power;
 use crate::model::Model;
 use crate::system::System;
