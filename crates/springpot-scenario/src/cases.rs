@@ -29,7 +29,7 @@ use crate::time;
 use crate::units::Unit;
 use springpot::Simulation;
 use springpot::law::Catalog;
-use springpot::system::{RunError, Shared};
+use springpot::system::{Adaptive, RunError, Shared};
 use std::cell::{Cell, OnceCell};
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -599,6 +599,18 @@ pub(crate) fn root<'a>(ctx: &'a Context<'a>, document: &'a Node) -> Read<Table<'
     Ok(root)
 }
 
+/// Refuses the explicit method where it is asked for and what acts is not for it.
+fn check_method(root: &Table<'_>, plan: &Plan) -> Read<()> {
+    if plan.settings.adaptive != Adaptive::Explicit {
+        return Ok(());
+    }
+    let Err(why) = plan.system_at_start().fits_explicit() else { return Ok(()) };
+    let method = root.get("solver").and_then(|solver| solver.node.get("method"));
+    let place = method.map_or(&root.node.place, |method| &method.place);
+    let refusal = place.refuse(RefusalKind::Rule, format!("`method` is \"explicit\": {why}"));
+    Err(root.ctx.refuse(refusal.help("leave it out: the run then takes \"radau\" where it has to")))
+}
+
 /// Reads everything but sweeps and what is the same in every case.
 pub(crate) fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
     let root = root(ctx, document)?;
@@ -650,6 +662,7 @@ pub(crate) fn read_plan(ctx: &Context<'_>, document: &Node) -> Read<Plan> {
     steady::settle(ctx, &mut plan)?;
     let control = control::settle(ctx, &plan)?;
     plan.motion.follow(control);
+    check_method(&root, &plan)?;
     plan.events = events::read(&root, &plan)?;
     plan.metrics = metrics::read(&root, &plan)?;
     plan.design = design::read(&root, &plan)?;

@@ -1,7 +1,7 @@
 //! `[time]` and `[solver]`.
 
 use crate::keys::MotionKind;
-use crate::keys::solver::{ADAPTIVE, FIXED, MAX_ROWS, OF_CHOSEN_STEPS, SMALLEST_MEMORY_RTOL};
+use crate::keys::solver::{ADAPTIVE, FIXED, MAX_ROWS, OF_CHOSEN_STEPS, SMALLEST_MEMORY_RTOL, adaptive};
 use crate::keys::{FORWARD_RUNS, SOLVER, SOLVER_FIELDS, TIME, TIMES};
 use crate::reader::spacing::Spacing;
 use crate::reader::{Field, Read, Table};
@@ -9,7 +9,7 @@ use crate::text::document::{Node, shorten};
 use crate::text::names;
 use crate::text::refusal::RefusalKind;
 use springpot::methods::fixed::Method;
-use springpot::system::{FixedStep, RowTimes, Settings};
+use springpot::system::{Adaptive, FixedStep, RowTimes, Settings};
 
 /// Where nothing is said of the memory's kernel, its error is `rtol` divided by this.
 const MEMORY_SHARE: f64 = 100.0;
@@ -138,7 +138,11 @@ pub(crate) fn read_solver(root: &Table<'_>, time: &Read<Duration>) -> Read<Setti
     if table.get("memory_rtol").is_none() {
         settings.memory_rtol = (settings.rtol / MEMORY_SHARE).max(SMALLEST_MEMORY_RTOL);
     }
-    settings.fixed_step = fixed_step(&table)?;
+    let method = table.get("method").map(|field| method(&field)).transpose()?;
+    if let Some(Steps::Chosen(adaptive)) = method {
+        settings.adaptive = adaptive;
+    }
+    settings.fixed_step = fixed_step(&table, method)?;
     read.map(|()| settings)
 }
 
@@ -148,18 +152,30 @@ fn moves_by_itself(root: &Table<'_>) -> bool {
     kind.is_some_and(|kind| kind.text() == Some(FORWARD_RUNS))
 }
 
-/// `method` and `step`.
-fn fixed_step(table: &Table<'_>) -> Read<Option<FixedStep>> {
-    let method = table.get("method").map(|field| method(&field)).transpose()?.flatten();
-    match (method, table.get("step")) {
+/// A method by who chooses its steps.
+#[derive(Clone, Copy)]
+enum Steps {
+    Chosen(Adaptive),
+    Alike(Method),
+}
+
+/// `step`, beside the method.
+fn fixed_step(table: &Table<'_>, method: Option<Steps>) -> Read<Option<FixedStep>> {
+    let alike = match method {
+        Some(Steps::Alike(method)) => Some(method),
+        _ => None,
+    };
+    match (alike, table.get("step")) {
         (None, None) => Ok(None),
         (None, Some(step)) => {
             let help = "add method = \"backward-euler\" or \"midpoint\", or leave step out".to_owned();
-            Err(step.refuse(
-                RefusalKind::Rule,
-                "belongs to a fixed-step method; \"radau\" chooses its steps",
-                Some(help),
-            ))
+            let name = match method {
+                Some(Steps::Chosen(adaptive)) => adaptive.name(),
+                _ => None,
+            };
+            let who = name.map_or_else(|| "without one the run".to_owned(), |name| format!("{name:?}"));
+            let message = format!("belongs to a fixed-step method; {who} chooses its steps");
+            Err(step.refuse(RefusalKind::Rule, message, Some(help)))
         }
         (Some(_), None) => Err(table.missing("step", "step = \"1 ms\", as fixed-step methods need it")),
         (Some(method), Some(step)) => {
@@ -174,16 +190,16 @@ fn fixed_step(table: &Table<'_>) -> Read<Option<FixedStep>> {
     }
 }
 
-/// The method by its name; `None`: the adaptive one.
-fn method(field: &Field<'_>) -> Read<Option<Method>> {
+/// The method by its name.
+fn method(field: &Field<'_>) -> Read<Steps> {
     let name = field.text()?;
-    if name == ADAPTIVE {
-        return Ok(None);
+    if let Some(adaptive) = ADAPTIVE.into_iter().find(|adaptive| adaptive.name() == Some(name)) {
+        return Ok(Steps::Chosen(adaptive));
     }
     if let Some(method) = FIXED.into_iter().find(|method| method.name() == name) {
-        return Ok(Some(method));
+        return Ok(Steps::Alike(method));
     }
     let names = FIXED.map(Method::name);
-    let help = names::suggest(name, std::iter::once(ADAPTIVE).chain(names));
+    let help = names::suggest(name, adaptive().chain(names));
     Err(field.refuse(RefusalKind::UnknownName, format!("names no method: {:?}", shorten(name)), Some(help)))
 }

@@ -47,6 +47,9 @@ class Report(TypedDict):
     steps: int
     rejected_steps: int
     newton_iterations: int | None
+    explicit_steps: int | None
+    evaluations: int | None
+    method_switches: int | None
     modes: int
 
 def view_page(folder: str | os.PathLike[str], cases: Sequence[int]) -> str: ...

@@ -334,6 +334,9 @@ impl PySimulation {
             words.set_item("steps", report.steps)?;
             words.set_item("rejected_steps", report.rejected_steps)?;
             words.set_item("newton_iterations", report.newton_iterations)?;
+            words.set_item("explicit_steps", report.explicit_steps)?;
+            words.set_item("evaluations", report.evaluations)?;
+            words.set_item("method_switches", report.method_switches)?;
             words.set_item("modes", report.modes)?;
             Ok(words)
         })

@@ -37,6 +37,7 @@ use crate::table::ordered::Ordered;
 use crate::table::push_text;
 use case::Sections;
 use derivatives::RANKING_COLUMNS;
+use springpot::driver::Report;
 use springpot::system::Stop;
 use springpot::table::Column;
 use springpot_scenario::{Cases, Refusals};
@@ -122,8 +123,8 @@ pub struct Outcome {
     pub steps: u64,
     /// Inner steps tried and not kept.
     pub rejected_steps: u64,
-    /// Newton iterations over all cases, of forward dynamics.
-    pub newton_iterations: Option<u64>,
+    /// What forward dynamics took over all cases.
+    pub forward: Option<ForwardWork>,
     /// Simulated time over all cases, s.
     pub simulated: f64,
     /// Smallest time reached by a case that was begun; `None` where one has no row, or none was begun.
@@ -225,7 +226,7 @@ pub fn run(cases: &Cases, layout: &Layout, folder: &mut Folder, options: Options
         failed: tally.failed,
         steps: tally.steps,
         rejected_steps: tally.rejected_steps,
-        newton_iterations: tally.newton_iterations,
+        forward: tally.forward,
         simulated: tally.simulated,
         t_reached: tally.t_reached.flatten(),
         energy_residual: tally.energy_residual.map(|(_, [residual, turned_over])| (residual, turned_over)),
@@ -341,6 +342,30 @@ fn first_error(results: impl Iterator<Item = io::Result<()>>) -> io::Result<()> 
     errors.max_by_key(|error| error.raw_os_error().is_some()).map_or(Ok(()), Err)
 }
 
+/// What forward dynamics took.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct ForwardWork {
+    /// Newton iterations of implicit steps.
+    pub newton_iterations: u64,
+    /// Explicit steps; `None` where no case may take any.
+    pub explicit_steps: Option<u64>,
+    /// Solves for accelerations in these.
+    pub evaluations: u64,
+    /// How often a method took over from another one.
+    pub method_switches: u64,
+}
+
+impl ForwardWork {
+    fn take(&mut self, iterations: u64, report: &Report) {
+        self.newton_iterations += iterations;
+        if let Some(steps) = report.explicit_steps {
+            *self.explicit_steps.get_or_insert(0) += steps;
+        }
+        self.evaluations += report.evaluations.unwrap_or(0);
+        self.method_switches += report.method_switches.unwrap_or(0);
+    }
+}
+
 /// What is added up over the cases.
 #[derive(Debug, Default)]
 struct Tally {
@@ -349,7 +374,7 @@ struct Tally {
     failed: usize,
     steps: u64,
     rejected_steps: u64,
-    newton_iterations: Option<u64>,
+    forward: Option<ForwardWork>,
     simulated: f64,
     /// `None` before the first case.
     t_reached: Option<Option<f64>>,
@@ -372,7 +397,7 @@ impl Tally {
         self.steps += case.report.steps;
         self.rejected_steps += case.report.rejected_steps;
         if let Some(iterations) = case.report.newton_iterations {
-            *self.newton_iterations.get_or_insert(0) += iterations;
+            self.forward.get_or_insert_default().take(iterations, &case.report);
         }
         let reached = case.report.t_reached;
         self.simulated += reached.unwrap_or(0.0);

@@ -1,11 +1,12 @@
 //! The record of a run: run.json.
 
 use super::layout::Layout;
-use super::{CaseResult, Happened, MAX_LISTED, Outcome};
+use super::{CaseResult, ForwardWork, Happened, MAX_LISTED, Outcome};
 use crate::record::MOST_SHOWN;
 use crate::table::Format;
 use serde_json::{Map, Value, json};
 use springpot::observe::Quantity;
+use springpot::system::Adaptive;
 use springpot_scenario::{Cases, Plan, SweptValue};
 use std::ops::Range;
 
@@ -59,14 +60,27 @@ impl Outcome {
                     let part = json!({ "number": shard.number(), "count": shard.count(), "cases": [start, end] });
                     map.insert("shard".to_owned(), part);
                 }
-                if let Some(iterations) = self.newton_iterations {
-                    map.insert("newton_iterations".to_owned(), iterations.into());
-                }
+                map.extend(self.forward.iter().flat_map(|forward| effort(forward, self.steps)));
                 map
             }
             _ => unreachable!("the literal above is an object"),
         }
     }
+}
+
+/// What forward runs of so many `steps` took, and of methods that may take turns which took any.
+fn effort(forward: &ForwardWork, steps: u64) -> Vec<(String, Value)> {
+    let ForwardWork { newton_iterations, explicit_steps, evaluations, method_switches } = *forward;
+    let mut all = vec![("newton_iterations".to_owned(), newton_iterations.into())];
+    if let Some(explicit) = explicit_steps {
+        let took = [(Adaptive::Explicit, explicit), (Adaptive::Radau, steps - explicit)];
+        let names = took.into_iter().filter(|(_, steps)| *steps > 0).filter_map(|(method, _)| method.name());
+        all.push(("methods".to_owned(), names.collect()));
+        let numbers =
+            [("explicit_steps", explicit), ("evaluations", evaluations), ("method_switches", method_switches)];
+        all.extend(numbers.map(|(key, number)| (key.to_owned(), number.into())));
+    }
+    all
 }
 
 /// What is known of a run of these cases at its beginning, by the names of run.json.
@@ -196,8 +210,11 @@ fn one(cases: &Cases, layout: &Layout, case: &CaseResult) -> Value {
         if let Some(own) = &case.metrics.own {
             record.insert("metrics".to_owned(), serde_json::from_str(own).unwrap_or_default());
         }
-        // What does not belong to a way of running says nothing: Newton iterations, switches and resolution.
-        let silent = |key: &str| ["newton_iterations", "switches", "resolution"].contains(&key);
+        // What does not belong to a way of running says nothing.
+        let silent = |key: &str| {
+            let explicit = ["explicit_steps", "evaluations", "method_switches"];
+            ["newton_iterations", "switches", "resolution"].into_iter().chain(explicit).any(|own| own == key)
+        };
         record.extend(report.into_iter().filter(|(key, value)| !(value.is_null() && silent(key))));
     }
     record

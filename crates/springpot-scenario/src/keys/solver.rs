@@ -3,7 +3,7 @@
 use super::sweep::SCALE;
 use super::{Bound, Field, Keys, Need, Shape, Slot, key};
 use springpot::methods::fixed::Method;
-use springpot::system::Settings;
+use springpot::system::{Adaptive, Settings};
 
 pub(crate) static TIME: Keys = Keys {
     words: "Duration and rows.",
@@ -44,8 +44,12 @@ pub(crate) static TIMES: Keys = Keys {
     ],
 };
 
-/// The method that chooses its steps.
-pub(crate) const ADAPTIVE: &str = "radau";
+/// Methods that choose their steps.
+pub(crate) const ADAPTIVE: [Adaptive; 2] = [Adaptive::Explicit, Adaptive::Radau];
+/// Their names.
+pub(crate) fn adaptive() -> impl Iterator<Item = &'static str> + Clone {
+    ADAPTIVE.into_iter().filter_map(Adaptive::name)
+}
 /// Methods with steps of one size.
 pub(crate) const FIXED: [Method; 2] = [Method::BackwardEuler, Method::Midpoint];
 /// Smallest error of the memory's kernel; it is a hundredth of `rtol` where nothing else is said, and not below this.
@@ -100,9 +104,9 @@ pub(crate) static SOLVER: Keys = Keys {
         ),
         key(
             "method",
-            Shape::Words(|| [ADAPTIVE].into_iter().chain(FIXED.map(Method::name)).collect()),
-            Need::Word(ADAPTIVE),
-            "How it steps; \"radau\" chooses its steps.",
+            Shape::Words(|| adaptive().chain(FIXED.map(Method::name)).collect()),
+            Need::Said("chosen by the run: \"explicit\" or \"radau\""),
+            "How it steps; \"explicit\" and \"radau\" choose their steps.",
         )
         .only(FORWARD),
         key(

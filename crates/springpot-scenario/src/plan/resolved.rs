@@ -3,7 +3,6 @@
 use crate::elements::heat;
 use crate::elements::plan::{ElementPlan, FramePlan, ShapePlan};
 use crate::figures::FigurePlan;
-use crate::keys::solver::ADAPTIVE;
 use crate::keys::{ELEMENT_FIELDS, SOLVER_FIELDS, record};
 use crate::plan::Plan;
 use crate::robot::described::{EndStops, UrdfPlan};
@@ -71,9 +70,10 @@ impl Plan {
         solver.into()
     }
 
-    /// The method of forward dynamics.
+    /// The method of forward dynamics, unless the run chooses it.
     fn method(&self) -> Option<&'static str> {
-        self.motion.is_forward().then(|| self.settings.fixed_step.map_or(ADAPTIVE, |by| by.method.name()))
+        let fixed = self.settings.fixed_step.map(|by| by.method.name());
+        self.motion.is_forward().then(|| fixed.or(self.settings.adaptive.name()))?
     }
 
     fn body_name(&self, body: Parent) -> &str {

@@ -481,6 +481,19 @@ fn rules_are_kept() {
             (&[("rtol = 1e-9       ", "‸method = \"radau\"")], Rule, "`method` of [solver] belongs to forward runs"),
             (&[("rtol = 1e-9       ", "‸step = 0.1")], Rule, "`step` of [solver] belongs to forward runs"),
             (
+                &[(PRESCRIBED, "kind = \"forward\""), ("rtol = 1e-9       ", "method = ‸\"explicit\"")],
+                Rule,
+                "`method` is \"explicit\": the force of element \"strut\" hangs on the past",
+            ),
+            (
+                &[
+                    (PRESCRIBED, "kind = \"forward\""),
+                    ("rtol = 1e-9       ", "method = \"explicit\"\nstep = ‸\"1 ms\""),
+                ],
+                Rule,
+                "belongs to a fixed-step method; \"explicit\" chooses its steps",
+            ),
+            (
                 &[(PRESCRIBED, "kind = \"prescribed\"\njoints = { q1 = 0, q2 = 0, q3 = 0 }\ncsv = ‸\"m.csv\"")],
                 Rule,
                 "stands beside `joints`",

@@ -2,3 +2,4 @@
 
 mod ledger;
 pub(crate) mod recorder;
+pub(crate) mod works;

@@ -9,6 +9,12 @@ pub struct Report {
     pub rejected_steps: u64,
     /// Newton iterations of forward dynamics.
     pub newton_iterations: Option<u64>,
+    /// Explicit steps among them, of forward dynamics without memory.
+    pub explicit_steps: Option<u64>,
+    /// Solves for accelerations in explicit steps and between them.
+    pub evaluations: Option<u64>,
+    /// How often another method took over, since the motion was stiff or no longer so.
+    pub method_switches: Option<u64>,
     /// Rows written.
     pub rows: u64,
     /// Time of the last complete row, s; `None` before the first.

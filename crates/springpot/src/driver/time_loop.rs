@@ -760,10 +760,14 @@ impl Driver {
 
     /// What the run did, but for its rows.
     pub(super) fn report(&self) -> Report {
+        let explicit = self.solver.stepper().explicit();
         Report {
             steps: self.steps,
             rejected_steps: self.rejected_steps,
             newton_iterations: self.solver.stepper().newton_iterations(),
+            explicit_steps: explicit.map(|effort| effort.steps),
+            evaluations: explicit.map(|effort| effort.evaluations),
+            method_switches: explicit.map(|effort| effort.switches),
             modes: self.recorder.equations.bank.modes(),
             switches: self.switches(),
             resolution: self.switches().map(|_| FINEST * self.recorder.settings.end),

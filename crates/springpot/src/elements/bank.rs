@@ -345,6 +345,23 @@ impl ElementBank {
         }
     }
 
+    /// Force, N or N·m, and energy flows, W, of element `e`, whose law keeps nothing, at the first node of the step.
+    pub(crate) fn at_first_node(&self, e: usize) -> (f64, Power) {
+        let Banked { law, kept, told, .. } = &self.elements[e];
+        let Some(Kept { state, .. }) = kept else { return (0.0, Power::default()) };
+        let step = told.step(StepShape { nodes: Nodes::One, ..self.step });
+        let ([force, ..], [_, power, ..]) = (law.evaluate(&step, state).force, law.powers(&step, state));
+        (force, power)
+    }
+
+    /// Takes what the element is at the end of a step whose energies somebody else integrates, who adds them by [`Self::set_energies`].
+    pub(crate) fn account_end(&mut self, e: usize, at: &Point) {
+        let Banked { law, kept: Some(Kept { state, .. }), energies, .. } = &mut self.elements[e] else { return };
+        energies.powers = Powers::default();
+        energies.errors.clear();
+        energies.end = law.now(at, state);
+    }
+
     /// Forces of element `e` at the nodes and their tangents, as last evaluated.
     pub fn response(&self, e: usize) -> &Response {
         &self.elements[e].response

@@ -1,5 +1,7 @@
 //! Accelerations and forces at one time, whatever came before: M a = τ − nle − Σ g F, with friction at rest.
 
+mod at_once;
+
 use super::assembly::Equations;
 use super::context::Context;
 use super::control::{ControlRun, Eye};
@@ -13,6 +15,8 @@ use crate::elements::{ElementBank, Forces, Pull};
 use crate::law::{Derivative, InputValue, Point, State, Term};
 use crate::system::error::RunError;
 use crate::system::jump::refuse_jumps;
+
+pub(crate) use at_once::{AtOnce, OWN_POWERS};
 
 /// When the force of a singular start is looked at, s.
 const SOON: f64 = 1e-12;

@@ -17,7 +17,7 @@ use super::tangent::{Coupling, couplings};
 use crate::actuation::Forward;
 use crate::collocation::radau::GAMMA;
 use crate::collocation::{Nodes, RADAU_NODES, STAGES};
-use crate::dynamics::{Kinematics, RneaDerivatives, Workspace};
+use crate::dynamics::{Kinematics, RneaDerivatives, Workspace, crba_into};
 use crate::elements::{Element, ElementBank, Forces, NoDirection, Pull};
 use crate::fractional::Form;
 use crate::law::{InputValue, Point, Response};
@@ -58,6 +58,9 @@ pub(crate) struct Equations {
 #[derive(Debug)]
 pub(super) struct Tangent {
     pub(super) is_known: bool,
+    /// Whether sensors and elements were read there, and whether the mass matrix is that of `crba`, which alone steps without derivatives ask for.
+    pub(super) is_seen: bool,
+    pub(super) is_weighed: bool,
     /// Positions and velocities of the links, and whether they are those of the start.
     pub(super) is_placed: bool,
     pub(super) kinematics: Kinematics,
@@ -104,6 +107,8 @@ impl Equations {
             may_yield: system.elements.iter().any(may_yield),
             tangent: Tangent {
                 is_known: false,
+                is_seen: false,
+                is_weighed: false,
                 is_placed: false,
                 kinematics: Kinematics::new(model),
                 slopes: RneaDerivatives::new(model),
@@ -204,11 +209,9 @@ impl Equations {
     }
 
     fn linearise(&mut self, cx: Context, at: Node) -> Result<(), RunError> {
-        let (model, Tangent { kinematics, slopes, is_placed, .. }) = (&cx.system.model, &mut self.tangent);
+        self.see_start(cx, at)?;
+        let (model, Tangent { kinematics, slopes, .. }) = (&cx.system.model, &mut self.tangent);
         let Scratch { forces, workspace, .. } = &mut self.scratch;
-        if !std::mem::replace(is_placed, true) {
-            kinematics.update_velocity(model, at.q, at.v);
-        }
         self.rounding.forget();
         forces.clear();
         for (element, nodes) in cx.system.elements.iter().zip(&self.elements) {
@@ -216,6 +219,28 @@ impl Equations {
         }
         forces.inverse_dynamics_derivatives_into(model, kinematics, at.a, workspace, slopes);
         add_tangents(cx.system, at.v, &mut slopes.d_v);
+        if let Some(control) = &mut self.control {
+            let read = |e: usize| self.elements[e].read(0);
+            let eye = Eye { system: cx.system, t: at.t, q: at.q, v: at.v, kinematics, element: &read };
+            control.linearise(&eye, slopes);
+        }
+        if self.is_singular || self.may_yield {
+            self.share_forces(model.nv());
+        }
+        (self.tangent.is_known, self.tangent.is_weighed) = (true, false);
+        Ok(())
+    }
+
+    /// Reads sensors and elements at the start of the step, unless that was done.
+    fn see_start(&mut self, cx: Context, at: Node) -> Result<(), RunError> {
+        let (model, Tangent { kinematics, is_placed, .. }) = (&cx.system.model, &mut self.tangent);
+        if !std::mem::replace(is_placed, true) {
+            kinematics.update_velocity(model, at.q, at.v);
+        }
+        if std::mem::replace(&mut self.tangent.is_seen, true) {
+            return Ok(());
+        }
+        let kinematics = &self.tangent.kinematics;
         for (e, (element, nodes)) in cx.system.elements.iter().zip(&mut self.elements).enumerate() {
             let [reading, ..] = &mut nodes.readings;
             element.measure.read_into(model, kinematics, &mut nodes.gradient, reading);
@@ -225,15 +250,70 @@ impl Equations {
         }
         if let Some(control) = &mut self.control {
             let read = |e: usize| self.elements[e].read(0);
-            let eye = Eye { system: cx.system, t: at.t, q: at.q, v: at.v, kinematics, element: &read };
-            control.see_start(&eye)?;
-            control.linearise(&eye, slopes);
+            control.see_start(&Eye { system: cx.system, t: at.t, q: at.q, v: at.v, kinematics, element: &read })?;
         }
-        if self.is_singular || self.may_yield {
-            self.share_forces(model.nv());
-        }
-        self.tangent.is_known = true;
         Ok(())
+    }
+
+    /// Begins a step of size `h` that asks for no derivatives: what the start tells, and the mass matrix there.
+    ///
+    /// # Errors
+    /// Where an input breaks a rule of its law, an element has no direction, or a reference cannot be followed.
+    pub(crate) fn stand_at(&mut self, cx: Context, at: Node, h: f64) -> Result<(), RunError> {
+        self.bank.start(at.t, h);
+        for (e, element) in cx.system.elements.iter().enumerate().filter(|(_, element)| !element.inputs.is_empty()) {
+            let values = self.bank.inputs_mut(e, 0);
+            cx.inputs_at(e, at.t, values);
+            element.check_inputs(at.t, values)?;
+        }
+        self.see_start(cx, at)?;
+        if !std::mem::replace(&mut self.tangent.is_weighed, true) {
+            let Tangent { kinematics, slopes, .. } = &mut self.tangent;
+            self.rounding.forget();
+            crba_into(&cx.system.model, kinematics, &mut self.scratch.workspace, &mut slopes.d_a);
+        }
+        if let Some(control) = &self.control {
+            control.write_inputs(cx, 0, &mut self.bank);
+        }
+        self.driven.iter_mut().for_each(Vec::clear);
+        Ok(())
+    }
+
+    /// Takes the nodes of a step that was worked out without them, where it is looked at for changes: inputs, sensors and elements at `nodes`, whose last
+    /// one is at `t_end`.
+    ///
+    /// # Errors
+    /// Where an input breaks a rule of its law, or a reference cannot be followed.
+    pub(crate) fn take_nodes(
+        &mut self,
+        cx: Context,
+        nodes: [Node; STAGES],
+        kinematics: [&Kinematics; STAGES],
+    ) -> Result<(), RunError> {
+        for (e, element) in cx.system.elements.iter().enumerate().filter(|(_, element)| !element.inputs.is_empty()) {
+            for (k, node) in nodes.iter().enumerate() {
+                let values = self.bank.inputs_mut(e, k + 1);
+                cx.inputs_at(e, node.t, values);
+                element.check_inputs(node.t, values)?;
+            }
+        }
+        self.prepare(cx, nodes[STAGES - 1].t)?;
+        for (k, (node, kinematics)) in nodes.iter().zip(kinematics).enumerate() {
+            self.see(cx, k + 1, [node.q, node.v], kinematics);
+        }
+        self.answer();
+        Ok(())
+    }
+
+    /// Goes on to the end of a step that was worked out at one time after another: the forces of the elements there, and the positions and velocities
+    /// of the links, which are exchanged for those of the start.
+    pub(crate) fn arrive(&mut self, forces: &[f64], kinematics: &mut Kinematics) {
+        std::mem::swap(&mut self.tangent.kinematics, kinematics);
+        self.tangent.forget();
+        self.tangent.is_placed = true;
+        for (nodes, force) in self.elements.iter_mut().zip(forces) {
+            (nodes.singular, nodes.force) = (0.0, *force);
+        }
     }
 
     /// −M⁻¹ ∂y/∂q of every element over the free velocities.
@@ -434,7 +514,8 @@ impl Equations {
     /// Goes on to the end of the step, where the links are as `kinematics` tell, which is given those at the start.
     pub(crate) fn accept(&mut self, kinematics: &mut Kinematics) {
         std::mem::swap(&mut self.tangent.kinematics, kinematics);
-        (self.tangent.is_known, self.tangent.is_placed) = (false, true);
+        self.tangent.forget();
+        self.tangent.is_placed = true;
         for (e, nodes) in self.elements.iter_mut().enumerate() {
             let response = self.bank.response(e);
             nodes.singular = response.singular[STAGES - 1];
@@ -444,7 +525,7 @@ impl Equations {
 
     /// The start is another one: what was known of it holds no longer.
     pub(crate) fn restart(&mut self) {
-        (self.tangent.is_known, self.tangent.is_placed) = (false, false);
+        self.tangent.forget();
         self.elements.iter_mut().for_each(|nodes| nodes.singular = 0.0);
     }
 
@@ -477,6 +558,13 @@ impl Equations {
     /// How far and how fast each velocity that a controller drives is to go with its reference.
     pub(crate) fn going(&self) -> impl Iterator<Item = (usize, [f64; 2])> {
         self.control.iter().flat_map(|control| control.going())
+    }
+}
+
+impl Tangent {
+    /// The start is another one.
+    pub(super) fn forget(&mut self) {
+        (self.is_known, self.is_seen, self.is_weighed, self.is_placed) = (false, false, false, false);
     }
 }
 

@@ -266,6 +266,11 @@ impl Equations {
         found.map_or_else(|| sign(v), |(_, direction)| f64::from(direction))
     }
 
+    /// Whether the force of an element may have kinks.
+    pub(crate) fn has_kinks(&self) -> bool {
+        !self.kinks.is_idle()
+    }
+
     /// The first kink of a force in the step that the bank was told.
     pub(crate) fn look_for_kinks(&mut self, h: f64, noise: &[f64]) -> Seen {
         let Self { kinks, bank, elements, free, .. } = self;

@@ -26,7 +26,7 @@ mod tangent;
 mod variation;
 pub(crate) mod zero;
 
-pub(crate) use accelerations::{ElementAtStart, solve_mass};
+pub(crate) use accelerations::{AtOnce, ElementAtStart, OWN_POWERS, solve_mass};
 pub(crate) use ahead::Outlook;
 pub(crate) use assembly::Equations;
 pub(crate) use guards::{Change, Look, Solved, Within};

@@ -44,7 +44,7 @@ impl Equations {
     pub(crate) fn take_starts(&mut self) {
         self.is_singular = self.bank.has_singular();
         // They were told no rates.
-        self.tangent.is_known = false;
+        (self.tangent.is_known, self.tangent.is_seen) = (false, false);
     }
 
     /// Takes the samples that are due, from what is `shown` just before.
@@ -135,7 +135,7 @@ impl Equations {
             (nodes.force, nodes.singular) = (force, singular);
         }
         self.is_singular = is_singular;
-        (self.tangent.is_known, self.tangent.is_placed) = (false, false);
+        self.tangent.forget();
         true
     }
 }

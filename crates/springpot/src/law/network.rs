@@ -392,6 +392,11 @@ impl Network {
         self.ask().size() == state.size()
     }
 
+    /// Whether its force follows from stroke, rate and inputs of one time alone: no memories, no inner variables, no clock of its own.
+    pub fn keeps_nothing(&self) -> bool {
+        self.ask().size() == StateSize::default() && self.as_heated().is_none()
+    }
+
     /// Makes ready what does not change while a step is worked out; no answer changes.
     pub fn prepare(&self, step: &Step, state: &mut State) {
         state.make_room(self.ask().series_count());

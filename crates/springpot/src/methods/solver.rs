@@ -1,5 +1,6 @@
 //! The method of a run: which one its motion and settings ask for, and what of it must outlast a step.
 
+use super::explicit::{self, Explicit};
 use super::fixed::{self, Fixed};
 use super::prescribed::{self, Prescribed};
 use super::radau::{self, Radau};
@@ -8,7 +9,7 @@ use crate::account::recorder::Recorder;
 use crate::equations::context::Context;
 use crate::system::error::RunError;
 use crate::system::settings::Settings;
-use crate::system::{Motion, System};
+use crate::system::{Adaptive, Motion, System};
 use serde::{Deserialize, Serialize};
 
 /// One of the methods.
@@ -16,6 +17,7 @@ use serde::{Deserialize, Serialize};
 pub(crate) enum Solver {
     Prescribed(Box<Prescribed>),
     Radau(Box<Radau>),
+    Explicit(Box<Explicit>),
     Fixed(Box<Fixed>),
 }
 
@@ -24,6 +26,7 @@ pub(crate) enum Solver {
 pub(crate) enum SolverState {
     Prescribed(prescribed::StepperState),
     Radau(Box<radau::StepperState>),
+    Explicit(Box<explicit::StepperState>),
     Fixed(Box<fixed::StepperState>),
 }
 
@@ -51,6 +54,9 @@ impl Solver {
         }
         Ok(match (&cx.system.motion, settings.fixed_step) {
             (Motion::Given(trajectory), _) => Self::Prescribed(Box::new(Prescribed::new(cx, trajectory))),
+            (Motion::Forward(forward), None) if takes_explicit(cx.system, settings)? => {
+                Self::Explicit(Box::new(Explicit::new(cx, forward, settings)))
+            }
             (Motion::Forward(forward), None) => Self::Radau(Box::new(Radau::new(cx, forward, settings))),
             (Motion::Forward(forward), Some(by)) => Self::Fixed(Box::new(Fixed::new(cx, forward, by)?)),
         })
@@ -60,6 +66,7 @@ impl Solver {
         match self {
             Self::Prescribed(stepper) => &**stepper,
             Self::Radau(stepper) => &**stepper,
+            Self::Explicit(stepper) => &**stepper,
             Self::Fixed(stepper) => &**stepper,
         }
     }
@@ -68,6 +75,7 @@ impl Solver {
         match self {
             Self::Prescribed(stepper) => &mut **stepper,
             Self::Radau(stepper) => &mut **stepper,
+            Self::Explicit(stepper) => &mut **stepper,
             Self::Fixed(stepper) => &mut **stepper,
         }
     }
@@ -77,6 +85,7 @@ impl Solver {
         match self {
             Self::Prescribed(stepper) => SolverState::Prescribed(stepper.save()),
             Self::Radau(stepper) => SolverState::Radau(Box::new(stepper.save())),
+            Self::Explicit(stepper) => SolverState::Explicit(Box::new(stepper.save())),
             Self::Fixed(stepper) => SolverState::Fixed(Box::new(stepper.save())),
         }
     }
@@ -87,6 +96,7 @@ impl Solver {
             (self, state),
             (Self::Prescribed(_), SolverState::Prescribed(_))
                 | (Self::Radau(_), SolverState::Radau(_))
+                | (Self::Explicit(_), SolverState::Explicit(_))
                 | (Self::Fixed(_), SolverState::Fixed(_))
         )
     }
@@ -102,11 +112,27 @@ impl Solver {
                 stepper.load(*state);
                 Ok(())
             }
+            (Self::Explicit(stepper), SolverState::Explicit(state)) => {
+                stepper.load(*state);
+                Ok(())
+            }
             (Self::Fixed(stepper), SolverState::Fixed(state)) => {
                 stepper.load(cx, *state);
                 Ok(())
             }
             _ => Err(RunError::OtherRun),
         }
+    }
+}
+
+/// Whether steps are explicit as long as nothing is stiff.
+///
+/// # Errors
+/// [`RunError::NotExplicit`].
+fn takes_explicit(system: &System, settings: &Settings) -> Result<bool, RunError> {
+    match settings.adaptive {
+        Adaptive::Radau => Ok(false),
+        Adaptive::Either => Ok(system.fits_explicit().is_ok()),
+        Adaptive::Explicit => Ok(system.fits_explicit().map(|()| true)?),
     }
 }

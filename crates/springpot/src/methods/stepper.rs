@@ -62,6 +62,16 @@ pub(crate) enum Trial {
     Changes,
 }
 
+/// What explicit steps took.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct ExplicitEffort {
+    pub(crate) steps: u64,
+    /// Solves for accelerations.
+    pub(crate) evaluations: u64,
+    /// How often another method took over.
+    pub(crate) switches: u64,
+}
+
 /// A method that takes steps. It fills the evaluations of the recorder and tells the bank.
 pub(crate) trait Stepper: std::fmt::Debug + Send + Sync {
     /// The longest step, s.
@@ -201,6 +211,16 @@ pub(crate) trait Stepper: std::fmt::Debug + Send + Sync {
     /// # Errors
     /// What must not jump.
     fn cross(&mut self, cx: Context, recorder: &mut Recorder, after: f64) -> Result<(), RunError>;
+
+    /// Whether a step is the cubic through its nodes.
+    fn is_cubic(&self) -> bool {
+        true
+    }
+
+    /// What explicit steps took so far, of methods that take some.
+    fn explicit(&self) -> Option<ExplicitEffort> {
+        None
+    }
 
     /// Newton iterations so far, of methods that take some.
     fn newton_iterations(&self) -> Option<u64> {

@@ -262,6 +262,21 @@ pub enum RunError {
         /// The joint.
         joint: String,
     },
+    /// The explicit method was asked for, which is not for this system.
+    #[error("solver.method = \"explicit\": {0}; leave it out, and the run chooses")]
+    NotExplicit(#[from] super::explicit::Unfit),
+    /// The explicit method was asked for, and stability keeps its steps short.
+    #[error(
+        "t = {} s: the motion is stiff: stability, not accuracy, keeps explicit steps at {h:.1e} s; leave out \
+         solver.method = \"explicit\", and the run goes on with \"radau\" where it is",
+        seconds(*.t)
+    )]
+    TooStiff {
+        /// Time, s.
+        t: f64,
+        /// Size of the steps, s.
+        h: f64,
+    },
     /// More steps than allowed.
     #[error("t = {} s: {limit} steps are used up (solver.max_steps)", seconds(*.t))]
     TooManySteps {
@@ -444,6 +459,7 @@ impl RunError {
             | Self::NoHold { t, .. }
             | Self::IndefiniteMassMatrix { t, .. }
             | Self::TooManySteps { t, .. }
+            | Self::TooStiff { t, .. }
             | Self::Missed { t, .. }
             | Self::MissedKink { t, .. }
             | Self::Unbalanced { t, .. }
@@ -457,6 +473,7 @@ impl RunError {
             | Self::OtherRun
             | Self::Setting { .. }
             | Self::NoStepping { .. }
+            | Self::NotExplicit(_)
             | Self::NotDriven { .. }
             | Self::NoInput { .. }
             | Self::Sensitivity(_)

@@ -4,6 +4,7 @@ pub(crate) mod definite;
 mod end_stops;
 pub(crate) mod error;
 pub(crate) mod event;
+mod explicit;
 pub(crate) mod fixed_step;
 pub(crate) mod jump;
 pub(crate) mod row_times;
@@ -14,9 +15,10 @@ mod signals;
 
 pub use error::RunError;
 pub use event::{Action, Direction, Event, Setting};
+pub use explicit::Unfit;
 pub use fixed_step::FixedStep;
 pub use row_times::RowTimes;
-pub use settings::{Settings, Stop};
+pub use settings::{Adaptive, Settings, Stop};
 pub use shared::Shared;
 
 use sensitivity::Sensitivity;

@@ -27,6 +27,31 @@ pub struct Settings {
     pub max_steps: Option<u64>,
     /// Steps of one size, of forward dynamics; `None`: the run chooses its steps.
     pub fixed_step: Option<FixedStep>,
+    /// Which method of forward dynamics chooses its steps, where they are not of one size.
+    pub adaptive: Adaptive,
+}
+
+/// A method of forward dynamics that chooses its steps for a tolerance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Adaptive {
+    /// The explicit one where no law keeps anything and nothing is stiff, else the implicit one; it may change on the way.
+    #[default]
+    Either,
+    /// Radau IIA(5), for whatever is stiff or has memory.
+    Radau,
+    /// Dormand and Prince's method of order 8, for what is smooth.
+    Explicit,
+}
+
+impl Adaptive {
+    /// Its name in scenario files; none where the run chooses.
+    pub const fn name(self) -> Option<&'static str> {
+        match self {
+            Self::Either => None,
+            Self::Radau => Some("radau"),
+            Self::Explicit => Some("explicit"),
+        }
+    }
 }
 
 impl Settings {
@@ -42,6 +67,7 @@ impl Settings {
             max_step: None,
             max_steps: None,
             fixed_step: None,
+            adaptive: Adaptive::Either,
         }
     }
 

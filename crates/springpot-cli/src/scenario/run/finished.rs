@@ -6,7 +6,7 @@ use crate::scenario::swept::{NAMED_LIMITS, in_cases};
 use crate::{diagnostic, plain, terminal};
 use springpot_run::Finished;
 use springpot_run::numbers::{brief, count, rough, short};
-use springpot_run::sweep::{CaseResult, CasesPassing, Status};
+use springpot_run::sweep::{CaseResult, CasesPassing, ForwardWork, Status};
 use std::time::Duration;
 
 /// So many events are counted on the terminal.
@@ -126,7 +126,7 @@ impl Said {
             work.push(count(outcome.done + outcome.failed, "case", "cases"));
         }
         work.push(count(*rows, "row", "rows"));
-        if outcome.newton_iterations.is_none() {
+        if outcome.forward.is_none() {
             work.push(count(outcome.steps, "step", "steps"));
         }
         let work = format!("{} in {:.2} s", work.join(", "), wall.as_secs_f64());
@@ -162,8 +162,8 @@ impl Said {
             (false, false) => format!("{path}: no row was written, and nothing else"),
         };
         lines.push_str(&terminal::hanging("results  ", &results, width));
-        if let Some(iterations) = outcome.newton_iterations {
-            lines.push_str(&terminal::hanging("forward  ", &self.effort(iterations), width));
+        if let Some(forward) = &outcome.forward {
+            lines.push_str(&terminal::hanging("forward  ", &self.effort(forward), width));
         }
         lines
     }
@@ -264,7 +264,7 @@ impl Said {
     }
 
     /// What robots that move by themselves took: work, wall time, how much faster than life, and how well the energy balance closes.
-    fn effort(&self, iterations: u64) -> String {
+    fn effort(&self, forward: &ForwardWork) -> String {
         let outcome = &self.0.outcome;
         let wall = outcome.wall.as_secs_f64();
         let residual = match outcome.energy_residual {
@@ -276,11 +276,19 @@ impl Said {
             Some(_) => "0".to_owned(),
             None => "unknown".to_owned(),
         };
+        let ForwardWork { newton_iterations: iterations, evaluations, .. } = *forward;
+        let mut took = Vec::new();
+        if evaluations > 0 {
+            took.push(count(evaluations, "evaluation", "evaluations"));
+        }
+        if iterations > 0 || evaluations == 0 {
+            took.push(count(iterations, "Newton iteration", "Newton iterations"));
+        }
         format!(
             "{}, {} rejected, {}, {} s, {} times real time, energy residual {residual}",
             count(outcome.steps, "step", "steps"),
             outcome.rejected_steps,
-            count(iterations, "Newton iteration", "Newton iterations"),
+            took.join(", "),
             brief(wall),
             brief(if wall > 0.0 { outcome.simulated / wall } else { 0.0 }),
         )

@@ -38,6 +38,9 @@ impl Recorder {
 
     /// Work of the actuators and losses of the joints from the start of the step to θ.
     pub(super) fn work_until(&self, theta: f64) -> (f64, f64) {
+        if let Some(works) = &self.works {
+            return works.of_joints(theta);
+        }
         let (t, h) = self.span();
         let mut actuators = work(&self.powers.actuators, h, theta);
         for e in 0..self.equations.bank.len() {
@@ -59,6 +62,13 @@ impl Recorder {
             actuators += shares.iter().map(|(alpha, g)| singular_work(g, t, h, theta, *alpha)).sum::<f64>();
         }
         (actuators, work(&self.powers.joints, h, theta))
+    }
+
+    /// Energies that element `e` has dissipated and been supplied with since t = 0, until θ of the step.
+    pub(super) fn energies_until(&self, e: usize, theta: f64) -> (f64, f64) {
+        let Some(works) = &self.works else { return self.equations.bank.energies_until(e, theta) };
+        let ((dissipated, supplied), step) = (self.equations.bank.energies(e), works.of_element(e, theta));
+        (dissipated + step.0, supplied + step.1)
     }
 
     /// Adds the regular power that element `e` takes from the actuators of kinematics given in advance.

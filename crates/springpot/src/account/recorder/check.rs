@@ -37,6 +37,12 @@ impl Recorder {
             if (is - told).abs() <= allowed * fastest {
                 continue;
             }
+            // Where the motion is sought a rate is a difference of velocities, each of which is known to the tolerance.
+            let evaluation = &snapshot.evaluation;
+            let parts = evaluation.elements[e].gradient.iter().zip(&evaluation.v).map(|(g, v)| (g * v).abs());
+            if !self.takes_elements_work && (is - told).abs() <= self.settings.rtol * parts.sum::<f64>() {
+                continue;
+            }
             let derivative = snapshot.elements[e].observation.derivative.abs();
             // D^alpha x and its share of a step are those of the time of the memories.
             let pace = self.equations.bank.pace(e);

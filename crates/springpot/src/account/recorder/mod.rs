@@ -7,6 +7,7 @@ mod balance;
 mod check;
 
 use crate::account::ledger::{NodePower, Turnover};
+use crate::account::works::Works;
 use crate::collocation::STAGES;
 use crate::elements::{Element, MemoryRange};
 use crate::equations::Variation;
@@ -43,6 +44,8 @@ pub(crate) struct Recorder {
     pub(crate) is_whole: [bool; 2],
     pub(crate) equations: Equations,
     pub(crate) powers: StepPowers,
+    /// Works of the step, where its method integrates them itself.
+    pub(crate) works: Option<Works>,
     /// What parameters change, where any are asked for.
     pub(crate) variation: Option<Box<Variation>>,
     /// What is kept to go back through the run, where that is asked for.
@@ -92,6 +95,7 @@ impl Recorder {
             is_whole: [true; 2],
             equations: Equations::new(cx.system, settings.fixed_step.is_some()),
             powers: StepPowers::default(),
+            works: None,
             variation: None,
             recording: None,
             takes_elements_work: true,
@@ -230,12 +234,18 @@ impl Recorder {
         let end = &self.evaluations[STAGES];
         let (mut stored, mut dissipated, mut supplied) = (0.0, 0.0, 0.0);
         for e in 0..self.equations.bank.len() {
-            let until = self.equations.bank.energies_until(e, 1.0);
+            let until = self.energies_until(e, 1.0);
             // Of an element that takes no part all three are unknown.
             stored += self.equations.bank.end(e).stored.unwrap_or(f64::NAN);
             (dissipated, supplied) = (dissipated + until.0, supplied + until.1);
         }
         let balance = self.balance_of(end, [stored, dissipated, supplied], actuators, joints);
+        if self.works.is_some() {
+            for e in 0..self.equations.bank.len() {
+                let until = self.energies_until(e, 1.0);
+                self.equations.bank.set_energies(e, until);
+            }
+        }
         self.equations.commit(cx, self.settings.end)?;
         self.ledger.turnover.take(&balance);
         self.ledger.actuators += actuators;
@@ -310,7 +320,7 @@ impl Recorder {
         for e in 0..self.equations.bank.len() {
             let point = evaluation.elements[e].point(evaluation.t);
             let (observation, (dissipated, input)) = match theta {
-                Some(theta) => (self.equations.bank.at(e, theta, &point), self.equations.bank.energies_until(e, theta)),
+                Some(theta) => (self.equations.bank.at(e, theta, &point), self.energies_until(e, theta)),
                 None => (self.equations.bank.now(e, &point), self.equations.bank.energies(e)),
             };
             let observation = match observation {

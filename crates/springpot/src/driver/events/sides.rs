@@ -178,7 +178,8 @@ impl Functions {
             let all = cx.system.watched_events();
             // What stays away from zero need not be asked more closely.
             let apart = |functions: &mut Self, event: usize, sides: &mut Sides, driver: &mut Driver| {
-                let known = functions.needs[event] < Needs::Forces && sides.signs[event].abs() == 1;
+                let cubic = driver.solver.stepper().is_cubic();
+                let known = cubic && functions.needs[event] < Needs::Forces && sides.signs[event].abs() == 1;
                 if !known {
                     return Ok(false);
                 }

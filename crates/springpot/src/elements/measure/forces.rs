@@ -2,7 +2,7 @@
 
 use super::{Bushing, Cable, Measure};
 use crate::dynamics::{
-    Kinematics, PairForce, RneaDerivatives, Workspace, add_force, add_stiffness, rnea, rnea_at_into,
+    Kinematics, PairForce, RneaDerivatives, Workspace, aba_into, add_force, add_stiffness, rnea, rnea_at_into,
     rnea_derivatives_into,
 };
 use crate::model::Model;
@@ -99,6 +99,24 @@ impl Forces {
         let mut tau = rnea(model, q, v, a, &self.pairs);
         self.add_to(model, &Kinematics::at_position(model, q), &mut tau);
         tau
+    }
+
+    /// The accelerations under τ and these forces, of kinematics with velocities; `tau` is scratch behind it.
+    #[inline]
+    pub(crate) fn forward_dynamics_into(
+        &self,
+        model: &Model,
+        kinematics: &Kinematics,
+        tau: &mut [f64],
+        workspace: &mut Workspace,
+        a: &mut [f64],
+    ) {
+        if !(self.joints.is_empty() && self.cables.is_empty() && self.bushings.is_empty()) {
+            tau.iter_mut().for_each(|tau| *tau = -*tau);
+            self.add_to(model, kinematics, tau);
+            tau.iter_mut().for_each(|tau| *tau = -*tau);
+        }
+        aba_into(model, kinematics, tau, &self.pairs, workspace, a);
     }
 
     /// ∂τ/∂q, ∂τ/∂v and ∂τ/∂a of [`Self::inverse_dynamics_into`]: of the elements ∂y (∂F/∂y ∂yᵀ + ∂F/∂y' ∂y'ᵀ) + F ∂²y.

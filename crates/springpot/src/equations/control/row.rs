@@ -193,12 +193,12 @@ impl ControlRun {
         add(cx, &self.nodes[node].torque, evaluation);
     }
 
-    /// Writes the inputs at a node with their rates, under the accelerations there, once the step is solved.
-    pub(crate) fn write_rates(&self, node: usize, eye: &Eye, a: &[f64], bank: &mut ElementBank) {
+    /// Writes the rates of the inputs at a point of the bank, under the accelerations there.
+    pub(crate) fn write_rates(&self, point: usize, eye: &Eye, a: &[f64], bank: &mut ElementBank) {
         for law in &self.laws {
             let Target::Input(e, i) = law.target else { continue };
             let jets: Vec<Jet> = law.law.senses().iter().map(|sense| eye.jet(*sense, a)).collect();
-            bank.inputs_mut(e, node)[i].rate = law.law.jet_on(law.branch, eye.t, &jets).first;
+            bank.inputs_mut(e, point)[i].rate = law.law.jet_on(law.branch, eye.t, &jets).first;
         }
     }
 

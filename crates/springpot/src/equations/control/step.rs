@@ -77,10 +77,36 @@ impl ControlRun {
 
     /// Writes the inputs that follow from what was seen at a node, where nobody holds them.
     pub(crate) fn write_inputs(&self, cx: Context, node: usize, bank: &mut ElementBank) {
+        self.write_inputs_to(cx, [node; 2], bank);
+    }
+
+    /// The same to a point of the bank that is not the node.
+    pub(crate) fn write_inputs_to(&self, cx: Context, [node, point]: [usize; 2], bank: &mut ElementBank) {
         self.for_each_law(node, |target, value| match target {
-            Target::Input(e, i) if !cx.holds_input(e, i) => bank.inputs_mut(e, node)[i] = value,
+            Target::Input(e, i) if !cx.holds_input(e, i) => bank.inputs_mut(e, point)[i] = value,
             _ => {}
         });
+    }
+
+    /// Looks at the robot at any time, in the place of a node.
+    ///
+    /// # Errors
+    /// Where the reference cannot be followed.
+    pub(crate) fn look_from(&mut self, node: usize, eye: &Eye) -> Result<(), RunError> {
+        self.nodes[node].t = eye.t;
+        self.aim_at(eye.system, eye.t, node)?;
+        self.see(node, eye);
+        Ok(())
+    }
+
+    /// What laws without terms answer to what was seen so, where elements pull by `pull` (nv).
+    pub(crate) fn answer_from(&mut self, node: usize, pull: &[f64]) {
+        self.combine(node, &|_, _| 0.0, pull);
+    }
+
+    /// Whether the forces of the elements are taken off.
+    pub(crate) fn compensates(&self) -> bool {
+        self.compensates
     }
 
     /// Keeps ∂y/∂q of an element at a node, where its force is to be taken off.

@@ -14,7 +14,7 @@ use crate::system::error::RunError;
 const SHORTEST_STEP: [f64; 2] = [1e-20, 2.0 * f64::EPSILON];
 
 /// Velocities whose squares are finite.
-const FASTEST: f64 = 1e150;
+pub(in crate::methods) const FASTEST: f64 = 1e150;
 
 /// Growth that is not worth a new size.
 const KEPT: f64 = 1.2;
@@ -33,7 +33,7 @@ enum Worst {
 }
 
 /// Whether no step of a run that ends at `end` may be as short as `h` where `tried` was not short enough, or ends where that one did.
-pub(super) fn is_too_short(tried: &Target, h: f64, end: f64) -> bool {
+pub(in crate::methods) fn is_too_short(tried: &Target, h: f64, end: f64) -> bool {
     let [of_run, of_time] = SHORTEST_STEP;
     h < (of_run * end).max(of_time * tried.from) || tried.from + h >= tried.to
 }

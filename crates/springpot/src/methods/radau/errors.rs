@@ -3,7 +3,7 @@
 use super::sizes::{Sizes, Tolerance};
 use super::step::RadauStep;
 use crate::equations::context::Context;
-use crate::equations::{Equations, Outlook};
+use crate::equations::{Equations, Origin, Outlook};
 use crate::system::error::RunError;
 
 /// Share of the speed that all the energy turned over would give a joint alone: slower joints are not looked at more closely.
@@ -11,18 +11,18 @@ const ENERGY_FLOOR: f64 = 1e-6;
 
 /// What a step may err, and what that is measured by.
 #[derive(Debug)]
-pub(super) struct Errors {
-    pub(super) tolerance: Tolerance,
+pub(in crate::methods) struct Errors {
+    pub(in crate::methods) tolerance: Tolerance,
     /// How large the motion is.
-    pub(super) sizes: Sizes,
+    pub(in crate::methods) sizes: Sizes,
     /// The energy turned over so far, J.
-    pub(super) energy: f64,
+    pub(in crate::methods) energy: f64,
     /// How fast and how far each free velocity moves until the end of this step.
-    pub(super) sized: Vec<[f64; 2]>,
+    pub(in crate::methods) sized: Vec<[f64; 2]>,
     /// Errors that are allowed in this step, of each free velocity and of its coordinate.
-    pub(super) allowed: Vec<[f64; 2]>,
+    pub(in crate::methods) allowed: Vec<[f64; 2]>,
     /// What rounding makes of each free velocity in this step.
-    pub(super) noise: Vec<f64>,
+    pub(in crate::methods) noise: Vec<f64>,
 }
 
 impl Errors {
@@ -31,17 +31,24 @@ impl Errors {
     }
 
     /// Whether a velocity has no size that its error could be measured by.
-    pub(super) fn finds_nothing_moving(&self) -> bool {
+    pub(in crate::methods) fn finds_nothing_moving(&self) -> bool {
         self.sized.iter().any(|[speed, _]| *speed == 0.0)
     }
 }
 
-impl RadauStep {
-    /// What the errors of velocities and coordinates may be in a step of size `h`, in the order of the free velocities.
-    pub(super) fn allow(&mut self, cx: Context, equations: &mut Equations, h: f64) {
-        self.size_up(cx, equations, h);
-        let (model, origin, Errors { tolerance, sized, allowed, noise, .. }) =
-            (&self.model, &self.origin, &mut self.errors);
+impl Errors {
+    /// What the errors of velocities and coordinates may be in a step of size `h` from the origin under a `tolerance`, in the order of the free
+    /// velocities. Of one that no force moved yet `own` says how fast this very step makes it.
+    pub(in crate::methods) fn allow(
+        &mut self,
+        cx: Context,
+        equations: &mut Equations,
+        (origin, h): (&Origin, f64),
+        tolerance: Tolerance,
+        own: impl Fn(usize) -> f64,
+    ) {
+        self.size_up(cx, equations, (origin, h), own);
+        let (model, Self { sized, allowed, noise, .. }) = (&cx.system.model, self);
         let rounded = equations.round(cx, origin.node(), h, |r| tolerance.of(sized[r][0]));
         noise.clear();
         noise.extend(rounded.iter().map(|a| h * a));
@@ -55,10 +62,10 @@ impl RadauStep {
     }
 
     /// How fast and how far each free velocity moves until the end of a step of size `h`.
-    fn size_up(&mut self, cx: Context, equations: &Equations, h: f64) {
-        let (n, mass_matrix) = (self.model.nv(), &equations.slopes().d_a);
-        let Errors { sizes, energy, sized, .. } = &mut self.errors;
-        let until = self.origin.t + h;
+    fn size_up(&mut self, cx: Context, equations: &Equations, (origin, h): (&Origin, f64), own: impl Fn(usize) -> f64) {
+        let (n, mass_matrix) = (cx.system.model.nv(), &equations.slopes().d_a);
+        let Self { sizes, energy, sized, .. } = self;
+        let until = origin.t + h;
         sized.clear();
         for &k in equations.free() {
             let mass = mass_matrix[k * n + k];
@@ -72,15 +79,24 @@ impl RadauStep {
                     (missing, slip) = (missing.max(share * far), slip.max(share * fast));
                 }
             }
-            let speed = sizes.speed(k, until).max(self.origin.v[k].abs()).max(of_energy).max(slip);
+            let speed = sizes.speed(k, until).max(origin.v[k].abs()).max(of_energy).max(slip);
             // A joint that no force moved yet is measured by what this very step does.
-            let own = || self.stages.iter().fold(0.0, |largest: f64, stage| largest.max(h * stage.a[k].abs()));
-            let speed = if speed > 0.0 { speed } else { own() };
+            let speed = if speed > 0.0 { speed } else { own(k) };
             // What a stop takes up is little beside the flights between: there an error of the place is one of the energy.
             let square = equations.stiffness_of_stops(cx, k) / mass;
             let taken_up = if square > 0.0 { speed / square.sqrt() } else { f64::INFINITY };
             sized.push([speed, sizes.travel(k, until).min(taken_up).max(h * speed).max(missing)]);
         }
+    }
+}
+
+impl RadauStep {
+    /// What the errors of velocities and coordinates may be in a step of size `h`, in the order of the free velocities.
+    pub(super) fn allow(&mut self, cx: Context, equations: &mut Equations, h: f64) {
+        let Self { stages, errors, origin, .. } = self;
+        let own = |k: usize| stages.iter().fold(0.0, |largest: f64, stage| largest.max(h * stage.a[k].abs()));
+        let tolerance = errors.tolerance;
+        errors.allow(cx, equations, (origin, h), tolerance, own);
     }
 
     /// The rate at which the system answers the accelerations at the origin, rad/s.

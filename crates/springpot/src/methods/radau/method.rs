@@ -31,16 +31,16 @@ const LONGEST_STEP: [f64; 2] = [1.0 / 500.0, 1.0 / 50.0];
 /// Forward dynamics in steps that are chosen for the tolerance.
 #[derive(Debug)]
 pub(crate) struct Radau {
-    pub(super) step: RadauStep,
+    pub(in crate::methods) step: RadauStep,
     /// Whether signals prescribe joints.
-    pub(super) has_paths: bool,
+    pub(in crate::methods) has_paths: bool,
     /// Size and error of the last step kept.
-    pub(super) last: Option<(f64, f64)>,
+    pub(in crate::methods) last: Option<(f64, f64)>,
     /// Whether a law has inner variables, of which the motion may show nothing.
     pub(super) has_inner_variables: bool,
     /// Whether a law keeps inner strokes, whose energies no stroke shows either.
     pub(super) has_inner_strokes: bool,
-    pub(super) newton_iterations: u64,
+    pub(in crate::methods) newton_iterations: u64,
     pub(super) scratch: Scratch,
 }
 
@@ -86,6 +86,12 @@ impl Radau {
         let StepperState { carried, last, newton_iterations } = state;
         self.step.restore(carried);
         (self.last, self.newton_iterations) = (last, newton_iterations);
+    }
+
+    /// Takes over from another method, of whose steps nothing is predicted.
+    pub(in crate::methods) fn begin_anew(&mut self) {
+        self.last = None;
+        self.step.restart();
     }
 
     /// How large a motion the forces at the origin begin.

@@ -5,14 +5,14 @@ use serde::{Deserialize, Serialize};
 
 /// Relative tolerance of the motion's own size, and what it need not fall below.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Tolerance {
-    pub(super) rtol: f64,
+pub(in crate::methods) struct Tolerance {
+    pub(in crate::methods) rtol: f64,
     /// 0 where none was asked for.
-    pub(super) atol: f64,
+    pub(in crate::methods) atol: f64,
 }
 
 impl Tolerance {
-    pub(super) fn of(&self, size: f64) -> f64 {
+    pub(in crate::methods) fn of(&self, size: f64) -> f64 {
         self.atol.max(self.rtol * size.abs())
     }
 }
@@ -28,7 +28,7 @@ const ONSET: f64 = 1e-6;
 /// Accelerations a that a system answers at the rate ω lead to the speed a·min(t, 1/ω), and so far; what falls short of that, since forces
 /// change or something stands in the way, is measured by what it does alone. A singular start moves it at once: there it is a/ω from the first.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub(super) struct Sizes {
+pub(in crate::methods) struct Sizes {
     from: Vec<f64>,
     travel: Vec<f64>,
     speed: Vec<f64>,
@@ -73,7 +73,7 @@ impl Sizes {
     }
 
     /// Takes a state of the run in.
-    pub(super) fn take(&mut self, model: &Model, t: f64, q: &[f64], v: &[f64]) {
+    pub(in crate::methods) fn take(&mut self, model: &Model, t: f64, q: &[f64], v: &[f64]) {
         let travel = model.difference(&self.from, q);
         for (largest, value) in self.travel.iter_mut().zip(&travel).chain(self.speed.iter_mut().zip(v)) {
             *largest = largest.max(value.abs());

@@ -45,10 +45,10 @@ pub(super) struct Carried {
 
 /// The step from an [`Origin`].
 #[derive(Debug)]
-pub(super) struct RadauStep {
-    pub(super) model: Arc<Model>,
+pub(in crate::methods) struct RadauStep {
+    pub(in crate::methods) model: Arc<Model>,
     pub(super) rtol: f64,
-    pub(super) origin: Origin,
+    pub(in crate::methods) origin: Origin,
     pub(super) stages: [Stage; STAGES],
     pub(super) fitted: Fitted,
     /// Accelerations that a run with a singular start arrived with at the origin, where their share of it was taken off.
@@ -60,7 +60,7 @@ pub(super) struct RadauStep {
     pub(super) held: Vec<f64>,
     /// Ratio of successive increments, carried from step to step.
     pub(super) contraction: Contraction,
-    pub(super) errors: Errors,
+    pub(in crate::methods) errors: Errors,
     pub(super) scratch: EstimateScratch,
     /// What parameters change of joints that turn freely, over the step that was varied last.
     pub(super) turned: Vec<TurnedStages>,
@@ -156,12 +156,13 @@ impl RadauStep {
     /// Goes on to the end of the step that was just attempted and fitted.
     pub(super) fn accept(&mut self, h: f64, to: f64) {
         (self.fitted.last, self.arrived) = (Some(h), None);
-        let end = &self.stages[STAGES - 1];
-        self.origin.q.copy_from_slice(&end.q);
-        self.origin.v.copy_from_slice(&end.v);
-        self.origin.a.copy_from_slice(&end.a);
-        self.errors.sizes.take(&self.model, to, &self.origin.q, &self.origin.v);
-        self.origin.t = to;
+        let Self { stages: [.., end], origin, errors, model, .. } = self;
+        arrive(origin, errors, model, to, [&end.q, &end.v, &end.a]);
+    }
+
+    /// Goes on to the end of a step of another method.
+    pub(in crate::methods) fn arrive(&mut self, to: f64, end: [&[f64]; 3]) {
+        arrive(&mut self.origin, &mut self.errors, &self.model, to, end);
     }
 
     /// What the next step takes over.
@@ -187,7 +188,16 @@ impl RadauStep {
     }
 
     /// The origin was set from outside: nothing can be predicted from what was.
-    pub(super) fn restart(&mut self) {
+    pub(in crate::methods) fn restart(&mut self) {
         (self.fitted.last, self.arrived) = (None, None);
     }
+}
+
+/// The origin goes on to the end of a step.
+fn arrive(origin: &mut Origin, errors: &mut Errors, model: &Model, to: f64, [q, v, a]: [&[f64]; 3]) {
+    origin.q.copy_from_slice(q);
+    origin.v.copy_from_slice(v);
+    origin.a.copy_from_slice(a);
+    errors.sizes.take(model, to, q, v);
+    origin.t = to;
 }
