@@ -35,21 +35,21 @@ pub struct Settings {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Adaptive {
     /// The explicit one where no law keeps anything and nothing is stiff, else the implicit one; it may change on the way.
-    #[default]
     Either,
-    /// Radau IIA(5), for whatever is stiff or has memory.
+    /// Radau IIA(5), for whatever there is.
+    #[default]
     Radau,
     /// Dormand and Prince's method of order 8, for what is smooth.
     Explicit,
 }
 
 impl Adaptive {
-    /// Its name in scenario files; none where the run chooses.
-    pub const fn name(self) -> Option<&'static str> {
+    /// Its name in scenario files.
+    pub const fn name(self) -> &'static str {
         match self {
-            Self::Either => None,
-            Self::Radau => Some("radau"),
-            Self::Explicit => Some("explicit"),
+            Self::Either => "either",
+            Self::Radau => "radau",
+            Self::Explicit => "explicit",
         }
     }
 }
@@ -67,7 +67,7 @@ impl Settings {
             max_step: None,
             max_steps: None,
             fixed_step: None,
-            adaptive: Adaptive::Either,
+            adaptive: Adaptive::default(),
         }
     }
 
