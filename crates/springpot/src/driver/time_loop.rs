@@ -137,7 +137,7 @@ impl Driver {
         let first = self.solver.stepper_mut().start(cx, &mut self.recorder, &self.agenda)?;
         cx.system.check_definite(&self.recorder.evaluations[0].q)?;
         if !opens {
-            return Ok(());
+            return self.recorder.open_account(cx);
         }
         self.recorder.open(cx, first)?;
         self.begin_variation(cx)?;

@@ -176,6 +176,12 @@ impl Recorder {
             opened.map_err(RunError::of_kernel(&element.name))?;
         }
         self.equations.open_control(tolerance, first, horizon)?;
+        self.open_account(cx)
+    }
+
+    /// Opens the accounts alone.
+    pub(crate) fn open_account(&mut self, cx: Context) -> Result<(), RunError> {
+        let horizon = self.settings.end;
         let at_start = cx.system.elements.iter().zip(&self.evaluations[0].elements);
         let stretching = |(element, at): (&Element, &ElementEvaluation)| {
             element.law.as_heated().map_or(0.0, |heated| heated.stretching(&at.point(0.0), 1.0 / horizon))
