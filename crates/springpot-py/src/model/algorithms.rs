@@ -351,7 +351,7 @@ impl PyModel {
             inputs,
             [&[n, n, n]; 4],
             out,
-            |m, w, inputs, cubes| batch::rnea_second_derivatives_into(m, w, inputs, cubes),
+            batch::rnea_second_derivatives_into,
             |model, _, [q, v, a], cubes| {
                 let RneaSecondDerivatives { d_q_q, d_v_q, d_v_v, d_a_q } = rnea_second_derivatives(model, q, v, a);
                 for (cube, found) in cubes.into_iter().zip([d_q_q, d_v_q, d_v_v, d_a_q]) {
