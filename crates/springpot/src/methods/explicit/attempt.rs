@@ -9,7 +9,7 @@ use crate::equations::context::Context;
 use crate::equations::drives::drive;
 use crate::equations::kinks::Seen;
 use crate::equations::{Node, Within};
-use crate::methods::radau::attempt::{FASTEST, is_too_short};
+use crate::methods::radau::attempt::{is_too_short, refuse_overflow};
 use crate::methods::stepper::Target;
 use crate::system::error::RunError;
 
@@ -49,7 +49,7 @@ impl Explicit {
             errors.allow(cx, equations, (origin, h), self.tolerance, own);
             (error, worst) = self.estimate(recorder, h);
         }
-        self.refuse_overflow(target)?;
+        refuse_overflow(&cx.system.model, &self.step.end.v, target.to)?;
         if error <= 1.0 {
             self.tell(cx, recorder, target)?;
             let error = error.max(LEAST);
@@ -70,7 +70,7 @@ impl Explicit {
         }
         self.was_rejected = true;
         if is_too_short(target, smaller, recorder.settings.end) {
-            return Err(self.too_small(cx, recorder, target, error, worst));
+            return Err(self.too_small(cx, target, error, worst));
         }
         Ok(Err(smaller))
     }
@@ -106,13 +106,6 @@ impl Explicit {
             return (0.0, worst);
         }
         (of_fifth / ((of_fifth + 0.01 * of_third) * count as f64).sqrt(), worst)
-    }
-
-    /// Velocities whose energy is beyond double precision.
-    fn refuse_overflow(&self, target: &Target) -> Result<(), RunError> {
-        let Some(k) = self.step.end.v.iter().position(|v| v.abs() > FASTEST) else { return Ok(()) };
-        let what = format!("v.{}", self.radau.step.model.v_labels()[k].name);
-        Err(RunError::NotFinite { t: target.to, what, value: f64::INFINITY })
     }
 
     /// Tells the recorder the end of the step, and what lies before it where that may change anything.
@@ -172,14 +165,13 @@ impl Explicit {
         equations.take_nodes(cx, nodes, [first, second, &step.kinematics])
     }
 
-    fn too_small(&self, cx: Context, recorder: &Recorder, target: &Target, error: f64, worst: usize) -> RunError {
+    fn too_small(&self, cx: Context, target: &Target, error: f64, worst: usize) -> RunError {
         let (t, h) = (target.from, target.size);
         for (element, reading) in cx.system.elements.iter().zip(&self.step.found.readings) {
             if let Err(why) = reading.check() {
                 return element.without_direction(t, why);
             }
         }
-        _ = recorder;
         let subject = format!("joint \"{}\"", cx.system.model.v_labels()[worst].name);
         RunError::StepTooSmall { t, h, error, subject }
     }

@@ -10,7 +10,7 @@ use crate::equations::context::Context;
 use crate::equations::drives::drive;
 use crate::equations::evaluate::Evaluation;
 use crate::equations::{Change, Equations, Look, Solved, Within};
-use crate::methods::radau::attempt::is_too_short;
+use crate::methods::radau::attempt::{is_too_short, no_convergence};
 use crate::methods::radau::sizes::Tolerance;
 use crate::methods::radau::{self, Radau};
 use crate::methods::stepper::{ExplicitEffort, Stepper, Target, Trial};
@@ -236,12 +236,7 @@ impl Stepper for Explicit {
         if self.kept.is_stiff {
             return self.radau.gives_up(cx, recorder, step, size);
         }
-        is_too_short(step, size, 0.0).then(|| {
-            let speeds = self.step.end.v.iter().map(|v| v.abs());
-            let fastest = speeds.enumerate().max_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(0, |(k, _)| k);
-            let joint = cx.system.model.v_labels()[fastest].name.clone();
-            RunError::NoConvergence { t: step.from, h: step.size, joint }
-        })
+        is_too_short(step, size, 0.0).then(|| no_convergence(step, &cx.system.model, &self.step.end.v))
     }
 
     fn change_at_start(&mut self, cx: Context, recorder: &mut Recorder) -> Result<(), RunError> {

@@ -8,13 +8,14 @@ use crate::equations::TANGENTS;
 use crate::equations::context::Context;
 use crate::equations::kinks::Seen;
 use crate::methods::stepper::Target;
+use crate::model::Model;
 use crate::system::error::RunError;
 
 /// Shortest step as a share of the run, and of the time that has passed.
 const SHORTEST_STEP: [f64; 2] = [1e-20, 2.0 * f64::EPSILON];
 
 /// Velocities whose squares are finite.
-pub(in crate::methods) const FASTEST: f64 = 1e150;
+const FASTEST: f64 = 1e150;
 
 /// Growth that is not worth a new size.
 const KEPT: f64 = 1.2;
@@ -36,6 +37,19 @@ enum Worst {
 pub(in crate::methods) fn is_too_short(tried: &Target, h: f64, end: f64) -> bool {
     let [of_run, of_time] = SHORTEST_STEP;
     h < (of_run * end).max(of_time * tried.from) || tried.from + h >= tried.to
+}
+
+/// Refuses velocities at `t` whose energy is beyond double precision.
+pub(in crate::methods) fn refuse_overflow(model: &Model, v: &[f64], t: f64) -> Result<(), RunError> {
+    let Some(k) = v.iter().position(|v| v.abs() > FASTEST) else { return Ok(()) };
+    Err(RunError::NotFinite { t, what: format!("v.{}", model.v_labels()[k].name), value: f64::INFINITY })
+}
+
+/// That no step as short as `tried` leads on, by its fastest joint: velocities `v` at its end.
+pub(in crate::methods) fn no_convergence(tried: &Target, model: &Model, v: &[f64]) -> RunError {
+    let speeds = v.iter().map(|v| v.abs()).enumerate();
+    let fastest = speeds.max_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(0, |(k, _)| k);
+    RunError::NoConvergence { t: tried.from, h: tried.size, joint: model.v_labels()[fastest].name.clone() }
 }
 
 impl Radau {
@@ -60,7 +74,7 @@ impl Radau {
         if let Some((e, _)) = recorder.equations.lost() {
             (error, worst) = (f64::INFINITY, Worst::Element(e));
         }
-        self.refuse_overflow(t, h)?;
+        refuse_overflow(&self.step.model, &self.step.stages[STAGES - 1].v, t + h)?;
         if error <= 1.0 {
             self.evaluate_step(cx, recorder, target)?;
             let whole = self.has_paths || recorder.equations.holds_any();
@@ -111,14 +125,6 @@ impl Radau {
         } else {
             f64::INFINITY
         }
-    }
-
-    /// Velocities whose energy is beyond double precision.
-    fn refuse_overflow(&self, t: f64, h: f64) -> Result<(), RunError> {
-        let overflow = self.step.stages[STAGES - 1].v.iter().position(|v| v.abs() > FASTEST);
-        let Some(k) = overflow else { return Ok(()) };
-        let what = format!("v.{}", self.step.model.v_labels()[k].name);
-        Err(RunError::NotFinite { t: t + h, what, value: f64::INFINITY })
     }
 
     /// The largest of `error` and of what the estimate of the free joints may not see: the errors of the energy ledger, and of D^alpha x of

@@ -1,6 +1,6 @@
 //! The method behind the driver.
 
-use super::attempt::is_too_short;
+use super::attempt::{is_too_short, no_convergence};
 use super::dense::{Dense, Scratch};
 use super::sizes::Tolerance;
 use super::start;
@@ -233,12 +233,7 @@ impl Stepper for Radau {
 
     fn gives_up(&self, _: Context, _: &Recorder, step: &Target, size: f64) -> Option<RunError> {
         // At a start the first motion may be as small as it likes.
-        is_too_short(step, size, 0.0).then(|| {
-            let speeds = self.step.stages[STAGES - 1].v.iter().map(|v| v.abs());
-            let fastest = speeds.enumerate().max_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(0, |(k, _)| k);
-            let joint = self.step.model.v_labels()[fastest].name.clone();
-            RunError::NoConvergence { t: step.from, h: step.size, joint }
-        })
+        is_too_short(step, size, 0.0).then(|| no_convergence(step, &self.step.model, &self.step.stages[STAGES - 1].v))
     }
 
     fn change_at_start(&mut self, cx: Context, recorder: &mut Recorder) -> Result<(), RunError> {

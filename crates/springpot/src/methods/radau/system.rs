@@ -110,10 +110,13 @@ impl StageSystem {
                             }
                         }
                     }
-                    for coupling in couplings {
-                        let share = gains(coupling, h).map(|gain| gain[i][j]);
-                        coupling.add(share, slopes.free, matrix, line);
-                    }
+                }
+            }
+            for coupling in couplings {
+                let gains = gains(coupling, h);
+                for (i, j) in (0..STAGES * STAGES).map(|k| (k / STAGES, k % STAGES)) {
+                    let line = |r: usize| (i * count + r) * size + j * count;
+                    coupling.add(gains.map(|gain| gain[i][j]), slopes.free, matrix, line);
                 }
             }
         })
