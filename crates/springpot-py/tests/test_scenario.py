@@ -107,7 +107,7 @@ def test_command_line(tmp_path: Path) -> None:
     assert refused.returncode == 2 and "nothing.toml" in refused.stderr
 
 
-PRIVATE = ["_springpot", "_law", "_run", "_sweeps", "_toml", "_scenario"]
+PRIVATE = ["_springpot", "_law", "_regressor", "_run", "_sweeps", "_toml", "_scenario"]
 MODULES = ["springpot", *(f"springpot.{name}" for name in [*PRIVATE, "fractional", "units"])]
 
 

@@ -56,6 +56,7 @@ def robots() -> None:
     frames: list[str] = [*model.body_names, *model.body_parents, *model.frame_names, model.gripper_body or "", *words]
     counts: tuple[int, int] = (model.nq, model.nv)
     facts: list[Array] = [model.gravity_vector, model.masses, model.inertias, model.damping, model.friction, model.armature]
+    facts.append(model.body_numbers())
     limits: list[Array] = [model.lower_limits, model.upper_limits, model.velocity_limits, model.effort_limits]
     mass: float = model.mass
     q, v = model.normalise(model.neutral()), np.zeros((3, 1))
@@ -65,13 +66,18 @@ def robots() -> None:
     square: list[Array] = [model.crba(q), model.mass_inverse(q), model.coriolis(q, v), model.christoffel(q)]
     by_q, by_v = model.rnea_derivatives(v, [0.0], v)
     model.aba_derivatives(v, [0.0], v, out=(by_q, by_v))
+    slopes: list[Array] = [model.mass_derivative(q), model.joint_torque_regressor(q, v, v), *model.rnea_second_derivatives(q, v, v)]
+    momenta: list[Array] = [model.centroidal_matrix(q), model.centroidal_matrix_rate(q, v)]
     force: Array = model.gravity(model.random(seed=1, count=3))
     points: list[Array] = [model.com(q), model.com_jacobian(q), model.integrate(q, v), model.difference(q, q)]
     energy: float = model.kinetic_energy(q, [1.0]) + model.potential_energy(q)
     rotation, place = model.frame_placement("arm", q)
     jacobian: Array = model.frame_jacobian("arm", q) + model.frame_jacobian_rate("arm", q, [1.0])
-    length, gradient = model.pair_length(("world", [0, 0, -0.3]), ("arm", (0.3, 0, 0)), q)
+    start, end = ("world", [0, 0, -0.3]), ("arm", (0.3, 0, 0))
+    length, gradient = model.pair_length(start, end, q)
+    along: Array = sp.element_regressor(model, start, end, [0.0, 0.1, 0.2], q, rest_length=0.4, orders=[0.0, 0.5])
     print(frames, counts, facts, limits, mass, tau, a, square, force, points, energy, rotation, place, jacobian, length, gradient)
+    print(slopes, momenta, along)
 
 
 def simulations() -> None:
