@@ -56,7 +56,7 @@ def robots() -> None:
     frames: list[str] = [*model.body_names, *model.body_parents, *model.frame_names, model.gripper_body or "", *words]
     counts: tuple[int, int] = (model.nq, model.nv)
     facts: list[Array] = [model.gravity_vector, model.masses, model.inertias, model.damping, model.friction, model.armature]
-    facts.append(model.body_numbers())
+    facts.append(model.body_numbers)
     limits: list[Array] = [model.lower_limits, model.upper_limits, model.velocity_limits, model.effort_limits]
     mass: float = model.mass
     q, v = model.normalise(model.neutral()), np.zeros((3, 1))
