@@ -40,7 +40,7 @@ impl Case {
         let options = UrdfOptions { floating_base: is_floating, ..UrdfOptions::default() };
         let model =
             Urdf::read(path.as_ref(), &options).and_then(|urdf| urdf.model([0.0, 0.0, -9.81])).expect("a robot");
-        let last = Parent::Body(model.body_names().len() - 1);
+        let last = Parent::Body(model.joint_body(model.joint_count() - 1));
         let site = |body, point| model.resolve(&Anchor { body, point }).expect("the body exists");
         let ends = [site(Parent::Body(1), [0.14, -0.1, 0.08]), site(last, [0.0, 0.1, 0.1])];
         let numbers = |width: usize, seed: f64| {

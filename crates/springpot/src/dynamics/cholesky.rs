@@ -19,6 +19,44 @@ use std::ops::Range;
 pub fn cholesky_into<T: Scalar>(model: &Model, mass: &mut [T]) {
     let n = model.nv();
     assert_eq!(mass.len(), n * n, "the mass matrix is nv x nv");
+    T::in_columns(Elimination { model, rows: mass });
+}
+
+/// Velocities for whose pivots there is room while rows are gathered.
+const PIVOTS: usize = 64;
+
+/// Row i less Σ_k (M_ki / D_k) row k over those that i carries, from the tips inwards, then all rows divided by their pivots.
+struct Elimination<'a, T> {
+    model: &'a Model,
+    rows: &'a mut [T],
+}
+
+impl<T: Scalar> ColumnWork<T> for Elimination<'_, T> {
+    #[inline(always)]
+    fn run<C: Columns<T>>(self) {
+        let Self { model, rows } = self;
+        let n = model.nv();
+        if C::WIDTH == 1 || n > PIVOTS || !model.is_deep() {
+            return eliminate(model, rows);
+        }
+        let mut inverses = [T::ZERO; PIVOTS];
+        for i in (0..n).rev() {
+            let factors = Pivoted { column: i, width: n, inverses: &inverses };
+            gather::<T, C>(rows, (n, i), 0..i + 1, None, model.carried(i), &factors);
+            inverses[i] = T::ONE / rows[i * n + i];
+        }
+        for k in 0..n {
+            for j in pivots(model, model.pivot(k)) {
+                rows[k * n + j] = rows[k * n + j] * inverses[k];
+            }
+        }
+    }
+}
+
+/// The same, row by row into those that carry it, whose entries alone are touched.
+#[inline(always)]
+fn eliminate<T: Scalar>(model: &Model, mass: &mut [T]) {
+    let n = model.nv();
     for k in (0..n).rev() {
         let (above, rest) = mass.split_at_mut(k * n);
         let row = &mut rest[..n];
@@ -105,17 +143,51 @@ impl<T: Scalar> ColumnWork<T> for Sweeps<'_, T> {
             let below = model.subtree_end(j);
             // Row j of L⁻ᵀ has nothing but the columns of what j carries.
             let columns = if is_inverse { j..below } else { 0..n };
-            gather::<T, C>(rows, (n, j), columns, None, model.carried(j), (factor, j, n));
+            gather::<T, C>(rows, (n, j), columns, None, model.carried(j), &Given { factor, start: j, step: n });
         }
         for k in 0..n {
             let columns = if is_inverse { k..n } else { 0..n };
             let inverse = T::ONE / factor[k * n + k];
-            gather::<T, C>(rows, (n, k), columns, Some(inverse), pivots(model, model.pivot(k)), (factor, k * n, 1));
+            let factors = Given { factor, start: k * n, step: 1 };
+            gather::<T, C>(rows, (n, k), columns, Some(inverse), pivots(model, model.pivot(k)), &factors);
         }
     }
 }
 
-/// row = row · scale − Σ_k factor_k row_k in some `columns`, the factors at `start + k · step`.
+/// What multiplies row k where rows are gathered.
+trait Factors<T> {
+    fn of(&self, rows: &[T], k: usize) -> T;
+}
+
+/// Entry `start + k · step` of a matrix.
+struct Given<'a, T> {
+    factor: &'a [T],
+    start: usize,
+    step: usize,
+}
+
+impl<T: Scalar> Factors<T> for Given<'_, T> {
+    #[inline(always)]
+    fn of(&self, _: &[T], k: usize) -> T {
+        self.factor[self.start + k * self.step]
+    }
+}
+
+/// A column of the rows themselves, over their pivots.
+struct Pivoted<'a, T> {
+    column: usize,
+    width: usize,
+    inverses: &'a [T; PIVOTS],
+}
+
+impl<T: Scalar> Factors<T> for Pivoted<'_, T> {
+    #[inline(always)]
+    fn of(&self, rows: &[T], k: usize) -> T {
+        rows[k * self.width + self.column] * self.inverses[k]
+    }
+}
+
+/// row = row · scale − Σ_k factor_k row_k in some `columns`.
 #[inline(always)]
 fn gather<T: Scalar, C: Columns<T>>(
     rows: &mut [T],
@@ -123,19 +195,21 @@ fn gather<T: Scalar, C: Columns<T>>(
     columns: Range<usize>,
     scale: Option<T>,
     terms: impl Iterator<Item = usize> + Clone,
-    factors: (&[T], usize, usize),
+    factors: &impl Factors<T>,
 ) {
     let mut from = columns.start;
     while from < columns.end {
         let left = columns.end - from;
-        let registers = left.div_ceil(C::WIDTH).min(4);
+        let registers = left.div_ceil(C::WIDTH).min(6);
         let block = from..from + left.min(registers * C::WIDTH);
         from = block.end;
         match registers {
             1 => gather_block::<T, C, 1>(rows, (n, row), block, scale, terms.clone(), factors),
             2 => gather_block::<T, C, 2>(rows, (n, row), block, scale, terms.clone(), factors),
             3 => gather_block::<T, C, 3>(rows, (n, row), block, scale, terms.clone(), factors),
-            _ => gather_block::<T, C, 4>(rows, (n, row), block, scale, terms.clone(), factors),
+            4 => gather_block::<T, C, 4>(rows, (n, row), block, scale, terms.clone(), factors),
+            5 => gather_block::<T, C, 5>(rows, (n, row), block, scale, terms.clone(), factors),
+            _ => gather_block::<T, C, 6>(rows, (n, row), block, scale, terms.clone(), factors),
         }
     }
 }
@@ -148,7 +222,7 @@ fn gather_block<T: Scalar, C: Columns<T>, const B: usize>(
     columns: Range<usize>,
     scale: Option<T>,
     terms: impl Iterator<Item = usize>,
-    (factor, start, step): (&[T], usize, usize),
+    factors: &impl Factors<T>,
 ) {
     let full = (B - 1) * C::WIDTH;
     let mut sums = [C::splat(T::ZERO); B];
@@ -164,7 +238,7 @@ fn gather_block<T: Scalar, C: Columns<T>, const B: usize>(
         }
     }
     for k in terms {
-        let (factor, other) = (C::splat(factor[start + k * step]), &rows[k * n..][columns.clone()]);
+        let (factor, other) = (C::splat(factors.of(rows, k)), &rows[k * n..][columns.clone()]);
         for b in 0..B - 1 {
             sums[b] = sums[b].minus_product(factor, C::load(&other[b * C::WIDTH..]));
         }
@@ -214,12 +288,21 @@ mod tests {
 
     /// Branches; joints in an order that is not depth first.
     fn tree() -> Model {
+        robot(23, 2)
+    }
+
+    fn chain(joints: usize) -> Model {
+        robot(joints, 1)
+    }
+
+    /// Joint k hangs on joint k − `apart`.
+    fn robot(joints: usize, apart: usize) -> Model {
         let mut builder = ModelBuilder::new([0.0, 0.0, -9.81]);
-        for k in 0..23_usize {
+        for k in 0..joints {
             let joint = JointSpec::revolute(format!("q{k}"), [1.0, 0.3 * k as f64, -0.5], [0.2, -0.1, 0.3]);
             let body = BodySpec {
                 name: format!("b{k}"),
-                parent: k.checked_sub(2).map_or(Parent::World, Parent::Body),
+                parent: k.checked_sub(apart).map_or(Parent::World, Parent::Body),
                 joint,
                 mass: 1.0,
                 com: [0.1, 0.0, 0.0],
@@ -228,6 +311,20 @@ mod tests {
             builder.push(body).unwrap();
         }
         builder.finish().unwrap()
+    }
+
+    #[test]
+    fn elimination_has_the_same_bits_by_rows_and_by_columns() {
+        for model in [tree(), robot(45, 2), chain(17), chain(PIVOTS + 1)] {
+            let n = model.nv();
+            let kinematics = Kinematics::at_position(&model, &model.random(5));
+            let mut factor = crate::dynamics::crba(&model, &kinematics);
+            let mut alone = factor.clone();
+            cholesky_into(&model, &mut factor);
+            eliminate(&model, &mut alone);
+            assert!(factor.iter().zip(&alone).all(|(a, b)| a.to_bits() == b.to_bits()), "{n} velocities");
+            assert_eq!(model.is_deep(), n != 23);
+        }
     }
 
     #[test]

@@ -408,6 +408,11 @@ impl Model {
         (i + 1..self.tree.ends[i]).rev().filter(move |k| self.tree.is_depth_first || self.touches(*k, i))
     }
 
+    /// Whether rows of the mass matrix are full enough to be worked on several columns at a time.
+    pub(crate) fn is_deep(&self) -> bool {
+        self.tree.is_deep
+    }
+
     /// Whether the elimination of velocity `k` touches velocity `i`.
     #[cold]
     fn touches(&self, mut k: usize, i: usize) -> bool {

@@ -30,6 +30,8 @@ pub(in crate::model) struct DegreeTree {
     pub(in crate::model) ends: Vec<usize>,
     /// Whether all velocities up to there do.
     pub(in crate::model) is_depth_first: bool,
+    /// Whether the elimination of a velocity touches eight others or more, in the mean.
+    pub(in crate::model) is_deep: bool,
 }
 
 /// What moves with the links, one entry per joint.
@@ -102,6 +104,7 @@ impl DegreeTree {
             pivots: Vec::new(),
             ends: Vec::new(),
             is_depth_first: true,
+            is_deep: false,
         }
     }
 
@@ -117,5 +120,6 @@ impl DegreeTree {
             }
         }
         self.is_depth_first = (0..n).all(|i| self.ends[i] - i == counts[i]);
+        self.is_deep = counts.iter().sum::<usize>() >= 9 * n.max(1);
     }
 }
