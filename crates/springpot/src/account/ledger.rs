@@ -15,7 +15,7 @@ const GAUSS: [(f64, f64); 6] = [
 ];
 
 /// A power at the start and at the nodes of a step, W.
-pub(super) type NodePower = [f64; STAGES + 1];
+pub(crate) type NodePower = [f64; STAGES + 1];
 
 /// ∫ power dt from t_n to t_n + θh.
 pub(super) fn work(power: &NodePower, h: f64, theta: f64) -> f64 {

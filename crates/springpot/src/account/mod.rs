@@ -1,5 +1,5 @@
 //! What a run keeps book of: evaluations of its nodes, energies, and whether they balance.
 
-mod ledger;
+pub(crate) mod ledger;
 pub(crate) mod recorder;
 pub(crate) mod works;

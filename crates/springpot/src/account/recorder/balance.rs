@@ -2,6 +2,7 @@
 
 use super::Recorder;
 use crate::account::ledger::{Balance, NodePower, singular_work, work, work_defect};
+use crate::account::works::{DISSIPATED, OF_ELEMENT, SUPPLIED};
 use crate::collocation::STAGES;
 use crate::equations::Equations;
 use crate::equations::evaluate::Evaluation;
@@ -21,13 +22,30 @@ const TINY_ENERGY: f64 = 1e-280;
 /// What rounding of strokes does to work, in units of stroke times force.
 const WORK_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// Share of rtol^⅔ that the energy ledger may err in one step, in units of the energy turned over.
-const ENERGY_SHARE: f64 = 0.01;
+/// What the energy ledger may err in one step.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Allowed {
+    /// In units of the energy turned over.
+    whole: f64,
+    /// What an element has dissipated, in units of itself.
+    account: f64,
+}
 
-/// Share of rtol^⅔ that what an element has dissipated may err in one step, in units of itself, at least so many times rtol^⅔
-/// of the energy turned over: beside a violent motion an element may lose little.
-const ACCOUNT_SHARE: f64 = 0.03;
+/// What an element has dissipated counts at least as so many times rtol^⅔ of the energy turned over: beside a violent motion an element may lose little.
 const ACCOUNT_FLOOR: f64 = 100.0;
+
+impl Allowed {
+    /// Where errors are told by an estimate of order 4 of a quadrature of order 5.
+    pub(crate) fn by_defects(rtol: f64) -> Self {
+        let allowed = rtol.powf(2.0 / 3.0);
+        Self { whole: 0.01 * allowed, account: 0.03 * allowed }
+    }
+
+    /// Where they are told by an estimate of the order at which works are known, or one less: a thousand steps may add up.
+    pub(crate) fn by_differences(rtol: f64) -> Self {
+        Self { whole: 2e-3 * rtol, account: 6e-3 * rtol }
+    }
+}
 
 impl Recorder {
     /// Time and size of the step.
@@ -173,32 +191,46 @@ impl Recorder {
         worst
     }
 
-    /// Estimate of what the step just worked out adds to the error of the ledger, in units of its tolerance; `floor` is a lower bound
-    /// of the energy turned over.
+    /// The powers of the step just worked out, in the order of [`Works`](crate::account::works::Works).
+    pub(crate) fn flows(&self) -> Vec<NodePower> {
+        let of_elements = (0..self.equations.bank.len()).flat_map(|e| {
+            let powers = self.equations.bank.powers(e);
+            [std::array::from_fn(|k| powers[k].dissipation), std::array::from_fn(|k| powers[k].input)]
+        });
+        [self.powers.actuators, self.powers.joints].into_iter().chain(of_elements).collect()
+    }
+
+    /// Estimate of what the step just worked out adds to the error of the ledger, by the differences of its quadrature, in units of its tolerance;
+    /// `floor` is a lower bound of the energy turned over.
     pub(crate) fn energy_error(&self, h: f64, floor: f64) -> f64 {
+        let defects: Vec<f64> = self.flows().iter().map(|power| work_defect(power, h)).collect();
+        self.share_of_ledger(h, floor, &defects, Allowed::by_defects(self.settings.rtol))
+    }
+
+    /// What `defects`, in the order of [`Self::flows`], add to the error of the ledger in a step of size `h`, in units of what is allowed.
+    pub(crate) fn share_of_ledger(&self, h: f64, floor: f64, defects: &[f64], allowed: Allowed) -> f64 {
         let turned_over = floor.max(self.turned_over()).max(self.ledger.stretching);
         // Of denormal energies no share can be told.
         if self.actuators_unknown() || turned_over < TINY_ENERGY || h <= SHORTEST_LEDGER_STEP * self.settings.end {
             return 0.0;
         }
-        let allowed = self.settings.rtol.powf(2.0 / 3.0);
         let rounding = self.rounding_of_work();
-        let mut defect = work_defect(&self.powers.actuators, h) + work_defect(&self.powers.joints, h);
+        let floor = (ACCOUNT_FLOOR * self.settings.rtol.powf(2.0 / 3.0)).min(1.0) * turned_over;
+        let (joints, elements) = defects.split_at(OF_ELEMENT);
+        let mut defect: f64 = joints.iter().sum();
         let mut worst_account = 0.0f64;
-        for e in 0..self.equations.bank.len() {
-            let (powers, (dissipated, _)) = (self.equations.bank.powers(e), self.equations.bank.energies(e));
-            let (dissipation, input) = (powers.map(|p| p.dissipation), powers.map(|p| p.input));
-            let own = work_defect(&dissipation, h);
-            defect += own + work_defect(&input, h);
+        for (e, own) in elements.chunks_exact(SUPPLIED + 1).enumerate() {
+            let (dissipated, _) = self.equations.bank.energies(e);
+            defect += own[DISSIPATED] + own[SUPPLIED];
             // Of NaN the larger is the other one.
-            let size = dissipated.abs() + (ACCOUNT_FLOOR * allowed).min(1.0) * turned_over;
-            worst_account = worst_account.max(own / (ACCOUNT_SHARE * allowed * size + rounding));
+            let size = dissipated.abs() + floor;
+            worst_account = worst_account.max(own[DISSIPATED] / (allowed.account * size + rounding));
         }
         if defect.is_nan() {
             // What is no number is no step to keep, but where no account is kept.
             return if self.knows_energies() { f64::INFINITY } else { 0.0 };
         }
-        worst_account.max(defect / (ENERGY_SHARE * allowed * turned_over + rounding))
+        worst_account.max(defect / (allowed.whole * turned_over + rounding))
     }
 
     /// What rounding of the strokes does to the work of the elements in a step, J: what has relaxed is known no better.

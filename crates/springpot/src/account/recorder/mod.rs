@@ -3,7 +3,7 @@
 //! A stepper fills the evaluations of a step (its start and its nodes) and tells the bank its strokes; the driver takes what was worked out into
 //! the past.
 
-mod balance;
+pub(crate) mod balance;
 mod check;
 
 use crate::account::ledger::{NodePower, Turnover};
@@ -246,13 +246,11 @@ impl Recorder {
             (dissipated, supplied) = (dissipated + until.0, supplied + until.1);
         }
         let balance = self.balance_of(end, [stored, dissipated, supplied], actuators, joints);
-        if self.works.is_some() {
-            for e in 0..self.equations.bank.len() {
-                let until = self.energies_until(e, 1.0);
-                self.equations.bank.set_energies(e, until);
-            }
-        }
+        let known = self.works.is_some();
+        let until: Vec<_> =
+            (0..self.equations.bank.len()).filter(|_| known).map(|e| self.energies_until(e, 1.0)).collect();
         self.equations.commit(cx, self.settings.end)?;
+        until.into_iter().enumerate().for_each(|(e, until)| self.equations.bank.set_energies(e, until));
         self.ledger.turnover.take(&balance);
         self.ledger.actuators += actuators;
         self.ledger.joints += joints;

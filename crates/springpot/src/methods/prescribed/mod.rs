@@ -1,10 +1,14 @@
 //! Kinematics given in advance: every step is evaluated where the motion is.
 //!
-//! Inner steps are chosen for the memories and for the energy ledger. Steps end on break points and kinks of the signals, where joints
+//! Inner steps are chosen for the memories and for the energy ledger, whose works are quadratures over two steps where nothing jumps between them. Steps end on break points and kinks of the signals, where joints
 //! turn round against friction that sticks, and where forces of elements have kinks.
 
 mod reversal;
+mod works;
 
+use self::works::{Before, Quadrature};
+use crate::account::ledger::NodePower;
+use crate::account::recorder::balance::Allowed;
 use crate::account::recorder::{Recorder, StepPowers};
 use crate::collocation::{Nodes, RADAU_NODES, RADAU_WEIGHTS, STAGES};
 use crate::elements::NoDirection;
@@ -42,8 +46,9 @@ const SHRINKS: f64 = 0.5;
 /// Rounding of a stroke, in units of its largest value: signals that begin at nothing are differences of what is that large.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// Exponent of the energy estimate, whose order is that of the third difference.
-const ENERGY_EXPONENT: f64 = 0.25;
+/// How the estimate of the energies falls with the step: that of the third difference, and that of the sixth.
+const THIRD: f64 = 4.0;
+const SIXTH: f64 = 7.0;
 
 /// Steps along a trajectory.
 #[derive(Debug)]
@@ -61,6 +66,13 @@ pub(crate) struct Prescribed {
     error: StepError,
     /// The first evaluation behind the step that was worked out.
     behind: Option<Evaluation>,
+    /// Powers of the step that was worked out, and of the one before it, where nothing jumps between them.
+    flows: Vec<NodePower>,
+    before: Option<Before>,
+    /// Whether no element has variables of its own inside, which are known to the order of a step's nodes alone.
+    is_plain: bool,
+    /// As last used.
+    quadrature: Option<Quadrature>,
     /// Where the last step that was refused starts, and how far each stroke was then from the integral of its rates, m.
     refused: Option<(f64, Vec<f64>)>,
 }
@@ -71,6 +83,7 @@ pub(crate) struct StepperState {
     energy_floor: f64,
     largest: Vec<f64>,
     since: f64,
+    before: Option<Before>,
 }
 
 /// Error of a step in units of its tolerance, by what it comes from.
@@ -81,12 +94,13 @@ struct StepError {
     falls: f64,
     /// Index of the worst element.
     element: Option<usize>,
-    /// The energy ledger.
+    /// The energy ledger: its error, which falls like this power of the step.
     energy: f64,
+    energy_falls: f64,
 }
 
 impl StepError {
-    const NONE: Self = Self { memory: 0.0, falls: 4.0, element: None, energy: 0.0 };
+    const NONE: Self = Self { memory: 0.0, falls: 4.0, element: None, energy: 0.0, energy_falls: THIRD };
 
     fn accepted(&self) -> bool {
         self.memory <= 1.0 && self.energy <= 1.0
@@ -95,7 +109,7 @@ impl StepError {
     /// By how much the next step may be longer; below 1 after a rejection.
     fn factor(&self) -> f64 {
         let memory = 0.85 * self.memory.powf(-1.0 / self.falls);
-        let energy = 0.85 * self.energy.powf(-ENERGY_EXPONENT);
+        let energy = 0.85 * self.energy.powf(-1.0 / self.energy_falls);
         let factor = memory.min(energy).clamp(0.1, 6.0);
         // A step that changes little keeps its size, and with it the tables of the exponentials.
         if (1.0..1.25).contains(&factor) { 1.0 } else { factor }
@@ -106,6 +120,8 @@ impl Prescribed {
     pub(crate) fn new(cx: Context, trajectory: &Arc<Trajectory>) -> Self {
         let rubbing = reversal::rubbing(&cx.system.model);
         let (trajectory, largest) = (trajectory.clone(), vec![0.0; cx.system.elements.len()]);
+        let mut laws = cx.system.elements.iter().map(|element| &element.law);
+        let is_plain = laws.all(|law| law.hidden_errors() != usize::MAX && !law.is_thermal());
         Self {
             trajectory,
             energy_floor: 0.0,
@@ -114,13 +130,18 @@ impl Prescribed {
             rubbing,
             error: StepError::NONE,
             behind: None,
+            flows: Vec::new(),
+            before: None,
+            is_plain,
+            quadrature: None,
             refused: None,
         }
     }
 
     /// What the next step takes over from those before.
     pub(crate) fn save(&self) -> StepperState {
-        StepperState { energy_floor: self.energy_floor, largest: self.largest.clone(), since: self.since }
+        let Self { energy_floor, largest, since, before, .. } = self;
+        StepperState { energy_floor: *energy_floor, largest: largest.clone(), since: *since, before: before.clone() }
     }
 
     /// Goes on from what was saved.
@@ -129,6 +150,7 @@ impl Prescribed {
     /// What a named scheme refuses.
     pub(crate) fn load(&mut self, cx: Context, recorder: &mut Recorder, state: StepperState) -> Result<(), RunError> {
         (self.energy_floor, self.largest, self.since) = (state.energy_floor, state.largest, state.since);
+        self.before = state.before;
         // What it tried on from there before is none of that state.
         (self.behind, self.refused) = (None, None);
         let rows = recorder.settings.rows.clone();
@@ -137,7 +159,7 @@ impl Prescribed {
     }
 
     /// Evaluates the step without keeping it; an element that turns over on the way is asked for a shorter one.
-    fn evaluate(&self, cx: Context, recorder: &mut Recorder, step: &Target) -> Result<StepError, RunError> {
+    fn evaluate(&mut self, cx: Context, recorder: &mut Recorder, step: &Target) -> Result<StepError, RunError> {
         let (t, h) = (step.from, step.size);
         for (k, c) in RADAU_NODES.into_iter().enumerate() {
             let at = if c == 1.0 { step.to } else { t + c * h };
@@ -146,8 +168,9 @@ impl Prescribed {
         }
         recorder.is_whole[1] = true;
         if let Some(element) = turned_over(cx, recorder, t, h)? {
-            return Ok(StepError { memory: 1e3, falls: 4.0, element: Some(element), energy: 0.0 });
+            return Ok(StepError { memory: 1e3, element: Some(element), ..StepError::NONE });
         }
+        recorder.works = None;
         recorder.powers = StepPowers::default();
         for (k, evaluation) in recorder.evaluations.iter().enumerate() {
             recorder.powers.actuators[k] = evaluation.rigid_power();
@@ -169,15 +192,32 @@ impl Prescribed {
             recorder.add_actuator_power(e);
             if !recorder.equations.bank.response(e).force.iter().all(|force| force.is_finite()) {
                 // A law that finds no force asks for a shorter step.
-                return Ok(StepError { memory: 1e3, falls: 4.0, element: Some(e), energy: 0.0 });
+                return Ok(StepError { memory: 1e3, element: Some(e), ..StepError::NONE });
             }
             let (share, falls) = recorder.memory_error(e, usize::MAX, 0.0, self.since);
             if share > error.memory {
                 error = StepError { memory: share, falls, element: Some(e), ..error };
             }
         }
-        error.energy = recorder.energy_error(h, self.energy_floor);
+        (error.energy, error.energy_falls) = self.take_works(recorder, h);
         Ok(error)
+    }
+
+    /// Takes works over two steps where their estimate is the smaller one: the error of the energies, and how it falls.
+    fn take_works(&mut self, recorder: &mut Recorder, h: f64) -> (f64, f64) {
+        let alone = recorder.energy_error(h, self.energy_floor);
+        self.flows = recorder.flows();
+        // What begins without bound is known by a quadrature of its own.
+        let is_plain = self.is_plain && !recorder.equations.bank.has_singular();
+        let Some(before) = self.before.as_ref().filter(|_| is_plain) else { return (alone, THIRD) };
+        let (works, errors) = before.works(h, &self.flows, &mut self.quadrature);
+        let allowed = Allowed::by_differences(recorder.settings.rtol);
+        let together = recorder.share_of_ledger(h, self.energy_floor, &errors, allowed);
+        if together > alone {
+            return (alone, THIRD);
+        }
+        recorder.works = Some(works);
+        (together, SIXTH)
     }
 
     /// Noise of stroke `e`, m: what does not shrink with the step, within what the path is solved to. Near singular configurations its
@@ -390,7 +430,9 @@ impl Stepper for Prescribed {
         cx.evaluate(&self.trajectory, at, at, &mut recorder.scratch, evaluation)
     }
 
-    fn accept(&mut self, _: Context, _: &mut Recorder, _: &Target) -> Result<(), RunError> {
+    fn accept(&mut self, _: Context, _: &mut Recorder, step: &Target) -> Result<(), RunError> {
+        let flows = std::mem::take(&mut self.flows);
+        self.before = (self.is_plain && step.behind == Behind::Step).then(|| Before::new(step.size, flows));
         Ok(())
     }
 
