@@ -1,12 +1,13 @@
 """Forward runs without memory: time at equal error, by all ways that springpot has to choose steps, and by MuJoCo, exudyn and SciPy on Pinocchio.
 
 python benches/peers/smooth_runs.py [COMMAND] [TIMES]: COMMAND is springpot (default: target/release/springpot). Every method goes once through its
-grid, tolerances a quarter of a decade apart or numbers of steps by a tenth of a decade, until its error is 1e-9 or a run takes over 1 s; these
+grid, tolerances a quarter of a decade apart or numbers of steps by a tenth of a decade, until its error is 1e-9 or a run takes over 0.5 s; these
 runs are printed. Then, for every error asked for, each method's first setting of the grid that is at or below the error is run TIMES times
 (default 7) in turn with the others'. The table has the medians, of a rival that of its fastest method, and their ratios to the first column's;
 nothing is interpolated, and a dash is an error that the grid does not reach.
 Error: the largest of q at the end, against SciPy's DOP853 at rtol 1e-13; where that is not installed, and for the stiff governor, against springpot.
-Times leave out imports, reading and building: of springpot the case's own wall time, of the others CPU time of the process.
+Times leave out imports, reading and building. Of springpot it is the command's CPU time less that of a run to t = 1 µs just before, and where that is
+under 5 ms the difference of the case's own wall times; of the others the CPU time of the process.
 Rivals that are not installed are left out (smooth_peers.py; needs NumPy). SciPy's steps and the forces of its elements are Python.
 """
 
@@ -14,6 +15,7 @@ import csv
 import json
 import math
 import pathlib
+import resource
 import statistics
 import subprocess
 import sys
@@ -88,22 +90,36 @@ CASES = {
 STIFF = {"flyball governor, 10 s"}
 OURS = {"left out": None, "either": "either", "explicit": "explicit", "radau": "radau"}
 ERRORS = [1e-3, 1e-6, 1e-9]
-LONGEST = 1.0  # s, the last run of a grid
+SHORT = 5e-3  # s
+LONGEST = 0.5  # s, the last run of a grid
 TOLERANCES = [10 ** (-k / 4) for k in range(8, 53)]
 STEPS = [round(10 ** (k / 10)) for k in range(15, 65)]
 
 
-def run(command, file, rtol, method):
-    """(seconds, q at the end, what the run counted), or None where the method does not take the case."""
-    out = file.parent / "out"
-    options = ["--set", f"solver.rtol={rtol}"] + (["--set", f'solver.method="{method}"'] if method else [])
-    done = subprocess.run([command, "run", file, "--out", out, "--no-figures", *options], capture_output=True, text=True)
+def spent(command, file, options):
+    """(CPU time of a run, s; its case as run.json has it), or None where it is refused."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    done = subprocess.run([command, "run", file, "--out", file.parent / "out", "--no-figures", *options], capture_output=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
     if done.returncode:
         return None
-    case = json.loads((out / "run.json").read_text())["cases"][0]
-    row = list(csv.DictReader((out / "results.csv").open()))[-1]
+    case = json.loads((file.parent / "out/run.json").read_text())["cases"][0]
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, case
+
+
+def run(command, file, rtol, method):
+    """(seconds, q at the end, what the run counted), or None where the method does not take the case."""
+    options = ["--set", f"solver.rtol={rtol}"] + (["--set", f'solver.method="{method}"'] if method else [])
+    begin = spent(command, file, [*options, "--set", "time.end=1e-6", "--set", "time.output_times=[1e-6]"])
+    whole = spent(command, file, options)
+    if begin is None or whole is None:
+        return None
+    (cpu_begin, case_begin), (cpu, case) = begin, whole
+    # CPU times of commands are uncertain by a millisecond, wall times of what takes long by what else the machine does.
+    seconds = cpu - cpu_begin if cpu - cpu_begin > SHORT else case["wall_time"] - case_begin["wall_time"]
+    row = list(csv.DictReader((file.parent / "out/results.csv").open()))[-1]
     counts = f"steps {case['steps']} + {case['rejected_steps']} evaluations {case.get('evaluations') or 0} Newton {case['newton_iterations']}"
-    return case["wall_time"], [float(value) for name, value in row.items() if name.startswith("q.")], counts
+    return seconds, [float(value) for name, value in row.items() if name.startswith("q.")], counts
 
 
 class Ours:
@@ -121,21 +137,22 @@ class Ours:
 
 def error_of(q, truth):
     """The largest difference; coordinates of springpot alone, fingers at rest, stand last and are not compared."""
-    error = max(abs(a - b) for a, b in zip(q, truth))
-    return error if error < math.inf else math.inf
+    errors = [abs(a - b) for a, b in zip(q, truth)]
+    return max(errors) if all(map(math.isfinite, errors)) else math.inf
 
 
 def through_grid(label, run, truth):
-    """All (seconds, error, setting) of a method."""
+    """(error, setting) of a method's settings, from the loosest on."""
     found = []
     for setting in STEPS if run.by_steps else TOLERANCES:
         result = run(setting)
         if result is None:
-            break
+            continue
         seconds, q, *counts = result
-        found.append((seconds, error_of(q, truth), setting))
-        print(f"{label:34} {setting:8.3g} error {found[-1][1]:7.1e} {1e3 * seconds:8.2f} ms", *counts, flush=True)
-        if found[-1][1] <= ERRORS[-1] or seconds > LONGEST:
+        error = error_of(q, truth)
+        found.append((error, setting))
+        print(f"{label:34} {setting:8.3g} error {error:7.1e} {1e3 * seconds:8.2f} ms", *counts, flush=True)
+        if error <= ERRORS[-1] or seconds > LONGEST:
             break
     return found
 
@@ -161,7 +178,7 @@ def medians_of(name, columns, truth, times):
         for method, run in methods.items():
             grid = through_grid(f"{name[:14]} {column[:6]} {method}", run, truth)
             for asked in ERRORS:
-                within = [setting for _, error, setting in grid if error <= asked]
+                within = [setting for error, setting in grid if error <= asked]
                 if within:
                     chosen[asked, column, method] = run, within[0]
     measured = {key: [] for key in chosen}
@@ -187,7 +204,7 @@ def rows(name, columns, truth, times):
                 cell += f" {method}"
             if took and column != first and (asked, first) in best:
                 ratio = took / best[asked, first][0]
-                cell += f", {ratio:.{0 if ratio >= 10 else 1 if ratio >= 1 else 2}f}×"
+                cell += f", {ratio:.0f}×" if ratio >= 10 else f", {ratio:.2g}×"
             cells.append(cell)
         yield [name, f"{asked:.0e}", *cells]
 
