@@ -1,16 +1,30 @@
-"""Forward runs without memory: work and time at equal error, by both methods that choose their steps and by the run's own choice.
+"""Forward runs without memory: time at equal error, by all ways that springpot has to choose steps, and by MuJoCo, exudyn and SciPy on Pinocchio.
 
-python benches/peers/smooth_runs.py [COMMAND] [TIMES]: COMMAND is springpot (default: target/release/springpot), each run is done TIMES times (default 7)
-in turn with the others, and the median of its case's own time is told. Errors are the largest of q at the end against rtol 1e-12.
+python benches/peers/smooth_runs.py [COMMAND] [TIMES]: COMMAND is springpot (default: target/release/springpot). Every method goes once through its
+grid, tolerances a quarter of a decade apart or numbers of steps by a tenth of a decade, until its error is 1e-9 or a run takes over 0.5 s; these
+runs are printed. Then, for every error asked for, each method's first setting of the grid that is at or below the error is run TIMES times
+(default 7) in turn with the others'. The table has the medians, of a rival that of its fastest method, and their ratios to the first column's;
+nothing is interpolated, and a dash is an error that the grid does not reach.
+Error: the largest of q at the end, against SciPy's DOP853 at rtol 1e-13; where that is not installed, and for the stiff governor, against springpot.
+Times leave out imports, reading and building. Of springpot it is the command's CPU time less that of a run to t = 1 µs just before, and where that is
+under 5 ms the difference of the case's own wall times; of the others the CPU time of the process.
+Rivals that are not installed are left out (smooth_peers.py; needs NumPy). SciPy's steps and the forces of its elements are Python.
 """
 
 import csv
 import json
+import math
 import pathlib
+import resource
 import statistics
 import subprocess
 import sys
 import tempfile
+
+try:
+    import smooth_peers
+except ModuleNotFoundError:  # without NumPy
+    smooth_peers = None
 
 SCENARIOS = pathlib.Path(__file__).resolve().parents[2] / "scenarios"
 STRUT = 'law = "kelvin-voigt"\nparameters = {{ k = {k}, c = {c} }}\n'
@@ -73,41 +87,147 @@ CASES = {
 }
 
 
-def run(command, file, rtol, method):
-    out = file.parent / "out"
-    options = ["--set", f"solver.rtol={rtol}"] + (["--set", f'solver.method="{method}"'] if method else [])
-    done = subprocess.run([command, "run", file, "--out", out, "--no-figures", *options], capture_output=True, text=True)
+STIFF = {"flyball governor, 10 s"}
+OURS = {"left out": None, "either": "either", "explicit": "explicit", "radau": "radau"}
+ERRORS = [1e-3, 1e-6, 1e-9]
+SHORT = 5e-3  # s
+LONGEST = 0.5  # s, the last run of a grid
+TOLERANCES = [10 ** (-k / 4) for k in range(8, 53)]
+STEPS = [round(10 ** (k / 10)) for k in range(15, 65)]
+
+
+def spent(command, file, options):
+    """(CPU time of a run, s; its case as run.json has it), or None where it is refused."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    done = subprocess.run([command, "run", file, "--out", file.parent / "out", "--no-figures", *options], capture_output=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
     if done.returncode:
         return None
-    case = json.loads((out / "run.json").read_text())["cases"][0]
-    row = list(csv.DictReader((out / "results.csv").open()))[-1]
-    return case, [float(value) for name, value in row.items() if name.startswith("q.")]
+    case = json.loads((file.parent / "out/run.json").read_text())["cases"][0]
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, case
+
+
+def run(command, file, rtol, method):
+    """(seconds, q at the end, what the run counted), or None where the method does not take the case."""
+    options = ["--set", f"solver.rtol={rtol}"] + (["--set", f'solver.method="{method}"'] if method else [])
+    begin = spent(command, file, [*options, "--set", "time.end=1e-6", "--set", "time.output_times=[1e-6]"])
+    whole = spent(command, file, options)
+    if begin is None or whole is None:
+        return None
+    (cpu_begin, case_begin), (cpu, case) = begin, whole
+    # CPU times of commands are uncertain by a millisecond, wall times of what takes long by what else the machine does.
+    seconds = cpu - cpu_begin if cpu - cpu_begin > SHORT else case["wall_time"] - case_begin["wall_time"]
+    row = list(csv.DictReader((file.parent / "out/results.csv").open()))[-1]
+    counts = f"steps {case['steps']} + {case['rejected_steps']} evaluations {case.get('evaluations') or 0} Newton {case['newton_iterations']}"
+    return seconds, [float(value) for name, value in row.items() if name.startswith("q.")], counts
+
+
+class Ours:
+    """A way of springpot's to choose steps: from rtol to what `run` gives."""
+
+    by_steps = False
+
+    def __init__(self, command, file, method):
+        self.asked = command, file, method
+
+    def __call__(self, rtol):
+        command, file, method = self.asked
+        return run(command, file, rtol, method)
+
+
+def error_of(q, truth):
+    """The largest difference; coordinates of springpot alone, fingers at rest, stand last and are not compared."""
+    errors = [abs(a - b) for a, b in zip(q, truth)]
+    return max(errors) if all(map(math.isfinite, errors)) else math.inf
+
+
+def through_grid(label, run, truth):
+    """(error, setting) of a method's settings, from the loosest on."""
+    found = []
+    for setting in STEPS if run.by_steps else TOLERANCES:
+        result = run(setting)
+        if result is None:
+            continue
+        seconds, q, *counts = result
+        error = error_of(q, truth)
+        found.append((error, setting))
+        print(f"{label:34} {setting:8.3g} error {error:7.1e} {1e3 * seconds:8.2f} ms", *counts, flush=True)
+        if error <= ERRORS[-1] or seconds > LONGEST:
+            break
+    return found
+
+
+def truth_of(name, ours, rivals):
+    """The q that errors are measured against; says how far others at their narrowest are from it."""
+    dop853 = rivals.get("SciPy + Pinocchio", {}).get("DOP853")
+    narrow = {"SciPy DOP853 at 1e-13": dop853 and dop853(1e-13)}
+    narrow |= {f"springpot {method} at {rtol}": ours[method](rtol) for method, rtol in [("explicit", 1e-13), ("radau", 1e-12)]}
+    if name in STIFF:
+        narrow = {"springpot radau at 1e-12": ours["radau"](1e-12)}
+    if "MuJoCo" in rivals:
+        narrow["MuJoCo RK4 in 160 000 steps"] = rivals["MuJoCo"]["RK4"](160000)
+    (first, truth), *others = [(label, result[1]) for label, result in narrow.items() if result]
+    print(f"{name}: against {first}", *(f"{label} {error_of(q, truth):.1e}" for label, q in others), sep=", ")
+    return truth
+
+
+def medians_of(name, columns, truth, times):
+    """(error asked for, column) ↦ (ms, method), of the column's fastest method."""
+    chosen = {}
+    for column, methods in columns.items():
+        for method, run in methods.items():
+            grid = through_grid(f"{name[:14]} {column[:6]} {method}", run, truth)
+            for asked in ERRORS:
+                within = [setting for error, setting in grid if error <= asked]
+                if within:
+                    chosen[asked, column, method] = run, within[0]
+    measured = {key: [] for key in chosen}
+    for _ in range(times):
+        for key, (run, setting) in chosen.items():
+            measured[key].append(1e3 * run(setting)[0])
+    best = {}
+    for (asked, column, method), values in measured.items():
+        found = statistics.median(values), method
+        best[asked, column] = min(found, best.get((asked, column), found))
+    return best
+
+
+def rows(name, columns, truth, times):
+    best = medians_of(name, columns, truth, times)
+    first = next(iter(columns))
+    for asked in ERRORS:
+        cells = []
+        for column, methods in columns.items():
+            took, method = best.get((asked, column), (None, None))
+            cell = f"{took:.2f}" if took else "–"
+            if took and len(methods) > 1:
+                cell += f" {method}"
+            if took and column != first and (asked, first) in best:
+                ratio = took / best[asked, first][0]
+                cell += f", {ratio:.0f}×" if ratio >= 10 else f", {ratio:.2g}×"
+            cells.append(cell)
+        yield [name, f"{asked:.0e}", *cells]
 
 
 def main():
     command = sys.argv[1] if len(sys.argv) > 1 else "target/release/springpot"
     times = int(sys.argv[2]) if len(sys.argv) > 2 else 7
+    print("not installed:", ", ".join(smooth_peers.MISSING if smooth_peers else ["NumPy"]) or "none")
+    names = [*OURS, *(smooth_peers.RIVALS if smooth_peers else [])]
+    table = [["", "error", *names], ["---"] * (len(names) + 2)]
     with tempfile.TemporaryDirectory() as folder:
-        file = pathlib.Path(folder) / "case.toml"
-        for name, text in CASES.items():
+        for k, (name, text) in enumerate(CASES.items()):
+            file = pathlib.Path(folder) / f"case{k}.toml"
             file.write_text(text)
-            _, truth = run(command, file, 1e-12, "radau")
-            for rtol in [1e-3, 1e-4, 1e-6, 1e-7, 1e-9, 1e-10]:
-                walls = {method: [] for method in ["radau", "explicit", "either"]}
-                last = {}
-                for _ in range(times):
-                    for method, own in walls.items():
-                        result = run(command, file, rtol, method)
-                        if result:
-                            own.append(1e3 * result[0]["wall_time"])
-                            last[method] = result
-                for method, (case, q) in last.items():
-                    error = max(abs(a - b) for a, b in zip(q, truth))
-                    print(
-                        f"{name:28} rtol {rtol:5.0e} {method:8} error {error:7.1e} steps {case['steps']:6} "
-                        f"+ {case['rejected_steps']:3} evaluations {case.get('evaluations') or 0:6} "
-                        f"Newton {case['newton_iterations']:6} {statistics.median(walls[method]):8.2f} ms"
-                    )
+            ours = {label: Ours(command, file, method) for label, method in OURS.items()}
+            rivals = smooth_peers.peers(text, name in STIFF) if smooth_peers else {}
+            truth = truth_of(name, ours, rivals)
+            columns = {label: {label: method} for label, method in ours.items()}
+            columns |= {rival: rivals.get(rival, {}) for rival in names[len(OURS) :]}
+            table += rows(name, columns, truth, times)
+    print("ms; times that of the first column")
+    for row in table:
+        print("|", " | ".join(row), "|")
 
 
 main()
