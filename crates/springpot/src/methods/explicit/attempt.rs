@@ -46,6 +46,9 @@ impl Explicit {
             let end = &self.step.end;
             let own = |k: usize| h * end.a[k].abs().max(origin.a[k].abs());
             errors.allow(cx, equations, (origin, h), self.tolerance, own);
+            let strict = recorder.settings.rtol;
+            let mut sizes = errors.noise.iter().zip(&errors.sized);
+            self.is_rounding = sizes.all(|(noise, [speed, _])| *noise > strict * speed);
             (error, worst) = self.estimate(recorder, h);
         }
         refuse_overflow(&cx.system.model, &self.step.end.v, target.to)?;

@@ -42,6 +42,8 @@ pub(crate) struct Explicit {
     /// Size of the step that was tried last, s.
     pub(super) h: f64,
     pub(super) was_rejected: bool,
+    /// Whether rounding makes more of every velocity in the step than it may err.
+    pub(super) is_rounding: bool,
     pub(super) way: Vec<f64>,
     pub(super) inner: [Kinematics; 2],
     pub(super) sums: [Vec<f64>; 2],
@@ -70,6 +72,8 @@ pub(super) struct Kept {
     /// Explicit steps near the edge of stability, and those off it since.
     pub(super) stiff_steps: u32,
     pub(super) other_steps: u32,
+    /// Explicit steps in a row that know no more than rounding leaves.
+    pub(super) rounding_steps: u32,
     pub(super) answering: Answering,
     pub(super) evaluations: u64,
     pub(super) steps: u64,
@@ -96,6 +100,7 @@ impl Explicit {
             looks_into: Definite::of(model).is_some(),
             h: 0.0,
             was_rejected: false,
+            is_rounding: false,
             way: Vec::new(),
             inner: std::array::from_fn(|_| Kinematics::new(model)),
             sums: Default::default(),
@@ -166,6 +171,7 @@ impl Kept {
             last: None,
             stiff_steps: 0,
             other_steps: 0,
+            rounding_steps: 0,
             answering: Answering::default(),
             evaluations: 0,
             steps: 0,

@@ -171,7 +171,12 @@ impl Explicit {
             return Ok(());
         }
         kept.taken += 1;
-        let changes = if kept.is_tried {
+        kept.rounding_steps = if self.is_rounding && !kept.is_stiff { kept.rounding_steps + 1 } else { 0 };
+        let changes = if kept.rounding_steps > STIFF_STEPS {
+            // Stages weigh rounding eight times, the other method's do not.
+            (kept.is_tried, kept.patience[1]) = (false, MOST_PATIENCE);
+            true
+        } else if kept.is_tried {
             if kept.taken == WARM {
                 kept.begin_work(t);
             }
