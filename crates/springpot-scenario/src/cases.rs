@@ -608,9 +608,7 @@ fn check_method(root: &Table<'_>, plan: &Plan) -> Read<()> {
     let method = root.get("solver").and_then(|solver| solver.node.get("method"));
     let place = method.map_or(&root.node.place, |method| &method.place);
     let refusal = place.refuse(RefusalKind::Rule, format!("`method` is \"explicit\": {why}"));
-    Err(root
-        .ctx
-        .refuse(refusal.help("leave it out, or write \"either\": the run then takes \"radau\" where it has to")))
+    Err(root.ctx.refuse(refusal.help("leave it out: the run then takes \"radau\" where it has to")))
 }
 
 /// Reads everything but sweeps and what is the same in every case.

@@ -170,7 +170,7 @@ fn fixed_step(table: &Table<'_>, method: Option<Steps>) -> Read<Option<FixedStep
         (None, Some(step)) => {
             let help = "add method = \"backward-euler\" or \"midpoint\", or leave step out".to_owned();
             let name = match method {
-                Some(Steps::Chosen(adaptive)) => Some(adaptive.name()),
+                Some(Steps::Chosen(adaptive)) => adaptive.name(),
                 _ => None,
             };
             let who = name.map_or_else(|| "without one the run".to_owned(), |name| format!("{name:?}"));
@@ -193,7 +193,7 @@ fn fixed_step(table: &Table<'_>, method: Option<Steps>) -> Read<Option<FixedStep
 /// The method by its name.
 fn method(field: &Field<'_>) -> Read<Steps> {
     let name = field.text()?;
-    if let Some(adaptive) = ADAPTIVE.into_iter().find(|adaptive| adaptive.name() == name) {
+    if let Some(adaptive) = ADAPTIVE.into_iter().find(|adaptive| adaptive.name() == Some(name)) {
         return Ok(Steps::Chosen(adaptive));
     }
     if let Some(method) = FIXED.into_iter().find(|method| method.name() == name) {

@@ -74,7 +74,7 @@ fn effort(forward: &ForwardWork, steps: u64) -> Vec<(String, Value)> {
     let mut all = vec![("newton_iterations".to_owned(), newton_iterations.into())];
     if let Some(explicit) = explicit_steps {
         let took = [(Adaptive::Explicit, explicit), (Adaptive::Radau, steps - explicit)];
-        let names = took.into_iter().filter(|(_, steps)| *steps > 0).map(|(method, _)| method.name());
+        let names = took.into_iter().filter(|(_, steps)| *steps > 0).filter_map(|(method, _)| method.name());
         all.push(("methods".to_owned(), names.collect()));
         let numbers =
             [("explicit_steps", explicit), ("evaluations", evaluations), ("method_switches", method_switches)];

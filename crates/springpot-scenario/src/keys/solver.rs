@@ -45,10 +45,10 @@ pub(crate) static TIMES: Keys = Keys {
 };
 
 /// Methods that choose their steps.
-pub(crate) const ADAPTIVE: [Adaptive; 3] = [Adaptive::Radau, Adaptive::Explicit, Adaptive::Either];
+pub(crate) const ADAPTIVE: [Adaptive; 2] = [Adaptive::Explicit, Adaptive::Radau];
 /// Their names.
 pub(crate) fn adaptive() -> impl Iterator<Item = &'static str> + Clone {
-    ADAPTIVE.into_iter().map(Adaptive::name)
+    ADAPTIVE.into_iter().filter_map(Adaptive::name)
 }
 /// Methods with steps of one size.
 pub(crate) const FIXED: [Method; 2] = [Method::BackwardEuler, Method::Midpoint];
@@ -105,8 +105,8 @@ pub(crate) static SOLVER: Keys = Keys {
         key(
             "method",
             Shape::Words(|| adaptive().chain(FIXED.map(Method::name)).collect()),
-            Need::Said("\"radau\""),
-            "How it steps; \"radau\", \"explicit\" and \"either\" choose their steps.",
+            Need::Said("chosen by the run: \"explicit\" or \"radau\""),
+            "How it steps; \"explicit\" and \"radau\" choose their steps.",
         )
         .only(FORWARD),
         key(

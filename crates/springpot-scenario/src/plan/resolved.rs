@@ -70,10 +70,10 @@ impl Plan {
         solver.into()
     }
 
-    /// The method of forward dynamics.
+    /// The method of forward dynamics, unless the run chooses it.
     fn method(&self) -> Option<&'static str> {
         let fixed = self.settings.fixed_step.map(|by| by.method.name());
-        self.motion.is_forward().then(|| fixed.unwrap_or(self.settings.adaptive.name()))
+        self.motion.is_forward().then(|| fixed.or(self.settings.adaptive.name()))?
     }
 
     fn body_name(&self, body: Parent) -> &str {

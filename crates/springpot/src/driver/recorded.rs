@@ -216,7 +216,7 @@ impl Driver {
         if variation.is_unsolved() {
             // What memories are asked for by the step is none of the row's.
             let within = theta.zip(self.step_at_hand()).map(|(theta, step)| (theta, step.size));
-            self.solver.stepper_mut().vary_within(&mut self.recorder, within);
+            self.solver.stepper_mut().vary_within(&mut self.recorder, within, snapshot);
         }
         let Recorder { equations, variation: Some(variation), recording: Some(recording), .. } = &mut self.recorder
         else {

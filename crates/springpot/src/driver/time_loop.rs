@@ -625,7 +625,7 @@ impl Driver {
         let Self { solver, recorder, step, .. } = self;
         recorder.variation.as_ref()?;
         let within = theta.zip(*step).map(|(theta, step)| (theta, step.size));
-        solver.stepper_mut().vary_within(recorder, within);
+        solver.stepper_mut().vary_within(recorder, within, snapshot);
         let Recorder { equations, variation, .. } = recorder;
         let variation = variation.as_deref_mut()?;
         if !is_of_motion {

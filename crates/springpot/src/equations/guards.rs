@@ -3,16 +3,17 @@
 
 use super::assembly::Equations;
 use super::context::Context;
-use super::control::{ControlSeen, Guard};
+use super::control::{ControlRun, ControlSeen, Guard};
 use super::evaluate::{ElementEvaluation, Evaluation, Scratch};
 use super::friction::CHATTER;
-use super::kinks::{Kink, Seen};
+use super::kinks::{Kink, Kinks, Seen};
 use super::node::ElementNodes;
 use super::node::Origin;
 use super::resistance::sign;
 use super::zero::{SAMPLES, first_zero};
 use crate::collocation::{Cubic, STAGES};
 use crate::elements::LastNode;
+use crate::system::System;
 use crate::system::error::RunError;
 
 /// Where holding forces are looked at besides the nodes: between them.
@@ -103,6 +104,11 @@ struct Holding {
     /// The force that breaks it, and how near a change has to be.
     breaking: f64,
     tolerance: f64,
+}
+
+/// Whether forces of elements and of control have no kinks and never jump while functions of time go on smoothly.
+pub(crate) fn is_smooth(system: &System) -> bool {
+    Kinks::of(system).is_idle() && ControlRun::of(system, false).is_none_or(|control| control.is_smooth())
 }
 
 impl Equations {
@@ -292,6 +298,11 @@ impl Equations {
     pub(crate) fn lean_again(&mut self) -> Vec<(usize, LastNode)> {
         let Self { bank, changes, .. } = self;
         changes.bent.iter().map(|&e| (e, bank.lean(e))).collect()
+    }
+
+    /// Which they are.
+    pub(crate) fn leaning(&self) -> &[usize] {
+        &self.changes.bent
     }
 
     /// Tells them where it ends again.

@@ -29,7 +29,7 @@ pub(crate) mod zero;
 pub(crate) use accelerations::{AtOnce, ElementAtStart, OWN_POWERS, solve_mass};
 pub(crate) use ahead::Outlook;
 pub(crate) use assembly::Equations;
-pub(crate) use guards::{Change, Look, Solved, Within};
+pub(crate) use guards::{Change, Look, Solved, Within, is_smooth};
 pub(crate) use node::{Node, Origin};
 pub(crate) use one_node::{OneNode, Place};
 pub use pose::{ElementStart, Pose, State};

@@ -1,6 +1,7 @@
 //! What parameters change at the nodes of a step: the equations of motion linearised there, and their right sides.
 
 mod adjoint;
+mod at_once;
 mod control;
 mod energies;
 mod found;
@@ -22,7 +23,7 @@ use crate::collocation::STAGES;
 use crate::dynamics::{Abreast, Kinematics, RneaDerivatives, Sought, Workspace};
 use crate::elements::{Measure, MemoryRange};
 use crate::law::past::Begun;
-use crate::law::variation::{LawVariation, ObservationVariation, PointVariation, StepVariation};
+use crate::law::variation::{LawVariation, PointVariation, StepVariation};
 use crate::law::{Network, Response, Start};
 use crate::linalg::columns::add;
 use crate::observe::Quantity;
@@ -402,6 +403,12 @@ impl Variation {
         others.iter_mut().for_each(|node| node.q.copy_from_slice(&start.q));
     }
 
+    /// What follows the start is another function than what came before: sees it, and what changes of the accelerations there.
+    pub(crate) fn start_anew(&mut self, equations: &Equations, start: Node) {
+        self.see_start(equations, start);
+        self.accelerate(equations);
+    }
+
     /// Sees where the step starts, and what changes of the elements there.
     pub(super) fn see_start(&mut self, equations: &Equations, start: Node) {
         if self.one_size.is_some() {
@@ -421,38 +428,11 @@ impl Variation {
             // Where a row asks for them.
             return;
         }
-        let (count, n, free) = (self.count(), self.nv(), self.of_run(equations.free()));
-        let [node, ..] = &mut self.nodes;
-        node.a.fill(0.0);
-        if free.is_empty() {
-            return;
+        let free = self.of_run(equations.free());
+        if !free.is_empty() {
+            (0..self.elements.len()).for_each(|e| self.pull(equations, (e, 0), &equations.bank.point(e, 0)));
         }
-        let mut solve = std::mem::take(&mut self.room.solve);
-        if solve.factor_part(&node.slopes.d_a, n, &free) {
-            let (mut spare, mut told) = ([vec![0.0; count], vec![0.0; count]], Vec::new());
-            for (e, ElementVariation { law, stroke, rate, inputs, row: [force, ..], .. }) in
-                self.elements.iter_mut().enumerate()
-            {
-                force.fill(0.0);
-                let [stored, derivative] = &mut spare;
-                let mut sum = ObservationVariation { force, stored, derivative, told: &mut told, leaves: None };
-                let told = at_start(count, [stroke, rate], inputs);
-                equations.bank.vary_now(e, (&equations.bank.point(e, 0), false), &told, law, &mut sum);
-            }
-            let mut right = vec![0.0; free.len() * count];
-            for (sum, &row) in right.chunks_exact_mut(count).zip(&free) {
-                self.add_unbalanced(0, row, sum);
-                self.add_pulled(0, row, |e| &self.elements[e].row[0], sum);
-            }
-            solve.solve_rows(&mut right, count);
-            let [node, ..] = &mut self.nodes;
-            for (own, &k) in right.chunks_exact(count).zip(&free) {
-                node.a[k * count..][..count].iter_mut().zip(own).for_each(|(a, own)| *a = -own);
-            }
-        } else {
-            node.a.fill(f64::NAN);
-        }
-        self.room.solve = solve;
+        self.solve_node(0, &free);
     }
 
     /// What changes of the inputs at node `i`, at time t, which follow from time alone or are held.

@@ -7,6 +7,7 @@ use super::radau::{self, Radau};
 use super::stepper::Stepper;
 use crate::account::recorder::Recorder;
 use crate::equations::context::Context;
+use crate::equations::is_smooth;
 use crate::system::error::RunError;
 use crate::system::settings::Settings;
 use crate::system::{Adaptive, Motion, System};
@@ -125,14 +126,20 @@ impl Solver {
     }
 }
 
-/// Whether steps are explicit as long as nothing is stiff.
+/// Whether steps are explicit as long as nothing is stiff. A run that is gone back through need not take those of the plain run where derivatives may
+/// share in their choice, and goes back through implicit ones by their own equations; what a controller leads is damped, and its reference keeps steps
+/// short, so that fewer evaluations in each are worth more than fewer steps.
 ///
 /// # Errors
 /// [`RunError::NotExplicit`].
 fn takes_explicit(system: &System, settings: &Settings) -> Result<bool, RunError> {
     match settings.adaptive {
         Adaptive::Radau => Ok(false),
-        Adaptive::Either => Ok(system.fits_explicit().is_ok()),
+        Adaptive::Either => {
+            let goes_back = system.sensitivity.as_ref().is_some_and(|by| by.adjoint.is_some() && by.control);
+            let is_led = system.control.controller.is_some();
+            Ok(!goes_back && !is_led && system.fits_explicit().is_ok() && is_smooth(system))
+        }
         Adaptive::Explicit => Ok(system.fits_explicit().map(|()| true)?),
     }
 }

@@ -6,6 +6,7 @@ use crate::equations::ROW;
 use crate::equations::context::Context;
 use crate::equations::evaluate::Evaluation;
 use crate::equations::{Change, Equations, Look};
+use crate::observe::Snapshot;
 use crate::signal::Agenda;
 use crate::system::error::RunError;
 use crate::system::settings::Settings;
@@ -141,9 +142,9 @@ pub(crate) trait Stepper: std::fmt::Debug + Send + Sync {
         Ok(())
     }
 
-    /// Works out what parameters change of the motion at θ of the step at hand, whose size is given too, or between two, as a row is asked for: into
-    /// node [`ROW`].
-    fn vary_within(&mut self, recorder: &mut Recorder, _within: Option<(f64, f64)>) {
+    /// Works out what parameters change of the motion at θ of the step at hand, whose size is given too, or between two, as a row is asked for that is as
+    /// `shown`: into node [`ROW`].
+    fn vary_within(&mut self, recorder: &mut Recorder, _within: Option<(f64, f64)>, _shown: &Snapshot) {
         recorder.variation.iter_mut().for_each(|variation| variation.take_start(ROW));
     }
 

@@ -25,9 +25,6 @@ pub enum Unfit {
     /// Nothing is moved by forces.
     #[error("no joint is moved by forces")]
     Led,
-    /// Derivatives are asked for.
-    #[error("derivatives by parameters go with \"radau\"")]
-    Differentiated,
 }
 
 impl System {
@@ -50,7 +47,6 @@ impl System {
         }
         match &self.motion {
             Motion::Forward(forward) if forward.free_velocities(&self.model).is_empty() => Err(Unfit::Led),
-            _ if self.sensitivity.is_some() => Err(Unfit::Differentiated),
             _ => Ok(()),
         }
     }

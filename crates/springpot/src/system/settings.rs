@@ -34,22 +34,22 @@ pub struct Settings {
 /// A method of forward dynamics that chooses its steps for a tolerance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Adaptive {
-    /// The explicit one where no law keeps anything and nothing is stiff, else the implicit one; it may change on the way.
+    /// The explicit one where no law keeps anything, no force has kinks and nothing is stiff, else the implicit one; it may change on the way.
+    #[default]
     Either,
     /// Radau IIA(5), for whatever there is.
-    #[default]
     Radau,
     /// Dormand and Prince's method of order 8, for what is smooth.
     Explicit,
 }
 
 impl Adaptive {
-    /// Its name in scenario files.
-    pub const fn name(self) -> &'static str {
+    /// Its name in scenario files; none where the run chooses.
+    pub const fn name(self) -> Option<&'static str> {
         match self {
-            Self::Either => "either",
-            Self::Radau => "radau",
-            Self::Explicit => "explicit",
+            Self::Either => None,
+            Self::Radau => Some("radau"),
+            Self::Explicit => Some("explicit"),
         }
     }
 }

@@ -62,7 +62,7 @@ fn what_else_acts_does_as_in_implicit_steps() {
             let settings = Settings { adaptive, ..plan.settings.clone() };
             run_system(&plan.system(), &settings)
         };
-        let [implicit, explicit] = [Adaptive::Radau, Adaptive::Either].map(run);
+        let [implicit, explicit] = [Adaptive::Radau, Adaptive::Explicit].map(run);
         let error = [&implicit, &explicit].map(|run| run.error.as_ref().map(ToString::to_string));
         assert!(error == [None, None], "{name}: {error:?}");
         let apart = apart(&implicit, &explicit);

@@ -5,6 +5,7 @@ mod orders;
 mod stiff;
 #[path = "../support/mod.rs"]
 mod support;
+mod tangents;
 
 use springpot::system::{Adaptive, RowTimes, Settings, System};
 use support::{Run, cases, run_system};

@@ -1,10 +1,11 @@
 //! What parameters change of the elements of a bank.
 
-use super::{Banked, ElementBank, Kept, Told};
+use super::{Banked, ElementBank, Kept, StepShape, Told};
+use crate::collocation::Nodes;
 use crate::law::variation::{
     LawVariation, ObservationVariation, PointVariation, PowersVariation, StepVariation, TakeError,
 };
-use crate::law::{Point, Response, State, When};
+use crate::law::{Point, Response, State, Step, When};
 
 /// How far towards the node before it the last node leans, as a share: more than a step may end behind a kink.
 const LEANS: f64 = 2e-7;
@@ -61,6 +62,33 @@ impl ElementBank {
         let Banked { law, kept, told, .. } = &self.elements[e];
         if let Some(Kept { state, .. }) = kept.as_ref().filter(|kept| kept.state.is_accounted()) {
             law.vary_powers(&told.step(self.step), state, by, own, sum);
+        }
+    }
+
+    /// Adds what changes of the energy flows of element `e`, whose law keeps nothing, at one time, where it is told `at`: of what is dissipated, and of
+    /// what inputs supply.
+    pub(crate) fn vary_powers_at(
+        &self,
+        e: usize,
+        at: &Point,
+        by: &PointVariation,
+        own: &LawVariation,
+        sums: [&mut [f64]; 2],
+    ) {
+        let Banked { law, kept: Some(Kept { state, .. }), told, .. } = &self.elements[e] else { return };
+        let (count, twice) = (own.count, [0, 1]);
+        let (stroke, rate, inputs) = (twice.map(|_| at.stroke), twice.map(|_| at.rate), at.inputs.repeat(2));
+        let step = told.step(StepShape { nodes: Nodes::One, ..self.step });
+        let step = Step { stroke: &stroke, rate: &rate, inputs: &inputs, ..step };
+        let [stroke, rate] = [by.stroke, by.rate].map(|block| block.repeat(2));
+        let inputs = by.inputs.map(|blocks| blocks.repeat(2));
+        let inputs = inputs.each_ref().map(Vec::as_slice);
+        let told = StepVariation { count, stroke: &stroke, rate: &rate, inputs, passed: None };
+        let mut flows = [(); 2].map(|()| vec![0.0; 2 * count]);
+        let [dissipation, input] = &mut flows;
+        law.vary_powers(&step, state, &told, own, &mut PowersVariation { dissipation, input });
+        for (sum, flows) in sums.into_iter().zip(&flows) {
+            sum.iter_mut().zip(&flows[count..]).for_each(|(sum, flow)| *sum += flow);
         }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::collocation::STAGES;
 use crate::dynamics::{Kinematics, Workspace, crba_into};
-use crate::elements::{Forces, Pull, Reading};
+use crate::elements::{Forces, NoDirection, Pull, Reading};
 use crate::equations::assembly::Equations;
 use crate::equations::context::Context;
 use crate::equations::control::Eye;
@@ -26,6 +26,8 @@ pub(crate) struct AtOnce {
     pub(crate) kinematics: Kinematics,
     pub(crate) readings: Vec<Reading>,
     pub(crate) forces: Forces,
+    /// The first element that has no direction, and why.
+    pub(crate) lost: Option<(usize, NoDirection)>,
     workspace: Workspace,
     gradient: Vec<f64>,
     /// Forces of the actuators, what joints resist by, and what of the forces is left without the accelerations that are sought (nv).
@@ -51,6 +53,7 @@ impl AtOnce {
             kinematics: Kinematics::new(model),
             readings: vec![Reading::default(); system.elements.len()],
             forces: Forces::with_room_for(system.elements.iter().map(|element| &element.measure)),
+            lost: None,
             workspace: Workspace::new(model),
             gradient: zero(),
             driven: zero(),
@@ -135,11 +138,12 @@ impl Equations {
         (t, node): (f64, usize),
         [q, v]: [&[f64]; 2],
     ) -> Result<bool, RunError> {
-        let AtOnce { kinematics, readings, gradient, .. } = found;
-        let mut has_direction = true;
+        let AtOnce { kinematics, readings, gradient, lost, .. } = found;
+        *lost = None;
         for (e, (element, reading)) in cx.system.elements.iter().zip(&mut *readings).enumerate() {
             element.measure.read_into(&cx.system.model, kinematics, gradient, reading);
-            has_direction &= self.elements[e].readings[0].lost_until(reading).or(reading.check().err()).is_none();
+            let why = self.elements[e].readings[0].lost_until(reading).or_else(|| reading.check().err());
+            *lost = lost.or(why.map(|why| (e, why)));
             self.bank.set_stroke(e, POINT, element.stroke(reading.coordinate), reading.rate);
             if !element.inputs.is_empty() {
                 let values = self.bank.inputs_mut(e, POINT);
@@ -150,12 +154,12 @@ impl Equations {
                 control.keep_gradient(node, e, gradient);
             }
         }
-        if let Some(control) = self.control.as_mut().filter(|_| has_direction) {
+        if let Some(control) = self.control.as_mut().filter(|_| lost.is_none()) {
             let read = |e: usize| [readings[e].coordinate, readings[e].rate];
             control.look_from(node, &Eye { system: cx.system, t, q, v, kinematics, element: &read })?;
             control.write_inputs_to(cx, [node, POINT], &mut self.bank);
         }
-        Ok(has_direction)
+        Ok(lost.is_none())
     }
 
     /// Asks the laws for forces and powers.

@@ -7,7 +7,7 @@ use crate::dynamics::{coriolis, gravity, kinetic_energy, potential_energy};
 use crate::equations::assembly::Equations;
 use crate::equations::resistance::{direction, each_loss_slope};
 use crate::law::variation::{ObservationVariation, PowersVariation};
-use crate::law::{Power, Powers};
+use crate::law::{Point, Power, Powers};
 use crate::observe::Quantity;
 use crate::signal::Signal;
 use crate::system::sensitivity::{Seed, Sensitivity};
@@ -44,8 +44,8 @@ pub(crate) struct WorksDone {
     origin: Vec<f64>,
     /// What was crossed before the step at hand.
     crossed: Option<Crossed>,
-    /// What every element dissipated at the end of the last step, W.
-    last: Vec<f64>,
+    /// What every element dissipated and was supplied with at the end of the last step, W.
+    last: Vec<[f64; 2]>,
 }
 
 /// A change that comes later by so much, s, and what every element dissipated and was supplied with before, W; of one whose force jumps by how much less
@@ -56,11 +56,13 @@ struct Crossed {
     before: Vec<([f64; 2], Option<f64>)>,
 }
 
-/// What changes of the flows at the start and at the nodes of a step.
+/// What changes of the flows of a step: of every element dissipated and supplied, and of what joints lose.
 #[derive(Debug)]
-struct Flows {
-    elements: Vec<[Vec<f64>; 2]>,
-    joints: Vec<f64>,
+enum Flows {
+    /// At the start and at the nodes.
+    AtNodes { elements: Vec<[Vec<f64>; 2]>, joints: Vec<f64> },
+    /// Of a step that integrated them itself: one block behind the other, what comes of them in the whole step and until the row.
+    Integrated { whole: Vec<f64>, row: Vec<f64>, last: Vec<[f64; 2]> },
 }
 
 impl Works {
@@ -110,6 +112,23 @@ impl Works {
 }
 
 impl Flows {
+    /// Adds what comes of them until θ of a step of size `h` to `sums` of the elements and of the joints.
+    fn add(&self, count: usize, part: (f64, f64), (elements, joints): (&mut [[Vec<f64>; 2]], &mut [f64])) {
+        let sums = elements.iter_mut().flatten().map(Vec::as_mut_slice).chain([joints]);
+        match self {
+            Self::AtNodes { elements, joints } => {
+                let flows = elements.iter().flatten().chain([joints]);
+                sums.zip(flows).for_each(|(sum, flows)| Self::until(flows, count, part, sum));
+            }
+            Self::Integrated { whole, row, .. } => {
+                let works = if part.1 == 1.0 { whole } else { row };
+                for (sum, works) in sums.zip(works.chunks_exact(count.max(1))) {
+                    sum.iter_mut().zip(works).for_each(|(sum, work)| *sum += work);
+                }
+            }
+        }
+    }
+
     /// What comes of blocks of flows until θ of a step of size `h`.
     fn until(flows: &[f64], count: usize, (h, theta): (f64, f64), to: &mut [f64]) {
         for (p, to) in to.iter_mut().enumerate() {
@@ -145,8 +164,8 @@ impl Variation {
     pub(super) fn cross_works(&mut self, equations: &Equations, later: &[f64]) {
         if self.works.is_kept {
             let before = |e: usize| {
-                let (bank, last) = (&equations.bank, equations.bank.powers(e)[STAGES]);
-                let flows = [last.dissipation, last.input];
+                let bank = &equations.bank;
+                let flows = self.works.done.last.get(e).copied().unwrap_or_default();
                 if !self.system.elements[e].law.jumps() {
                     return (flows, None);
                 }
@@ -181,10 +200,29 @@ impl Variation {
         if self.works.flows.is_some() {
             return;
         }
+        self.begin_flows(equations, |e| {
+            let first = equations.bank.powers(e)[0];
+            [first.dissipation, first.input]
+        });
         let count = self.count();
+        let blocks = || vec![0.0; (STAGES + 1) * count];
+        let (mut elements, mut joints) = (Vec::with_capacity(self.elements.len()), blocks());
+        for (e, element) in self.elements.iter().enumerate() {
+            let told = of_step(count, [&element.stroke, &element.rate], &element.inputs);
+            let mut own = [blocks(), blocks()];
+            let [dissipation, input] = &mut own;
+            equations.bank.vary_powers(e, &told, &element.law, &mut PowersVariation { dissipation, input });
+            elements.push(own);
+        }
+        joints.chunks_exact_mut(count).enumerate().for_each(|(i, flow)| self.flow_of_joints(i, flow));
+        self.works.flows = Some(Flows::AtNodes { elements, joints });
+    }
+
+    /// Takes what was crossed before the step at hand into the works, at whose start every element dissipates and is supplied with `first`, W.
+    fn begin_flows(&mut self, equations: &Equations, first: impl Fn(usize) -> [f64; 2]) {
         let crossed = self.works.done.crossed.take();
-        for (e, last) in std::mem::take(&mut self.works.done.last).into_iter().enumerate() {
-            let (law, now) = (&self.system.elements[e].law, equations.bank.powers(e)[0].dissipation);
+        for (e, [last, _]) in std::mem::take(&mut self.works.done.last).into_iter().enumerate() {
+            let (law, [now, _]) = (&self.system.elements[e].law, first(e));
             // What begins to slip dissipates at once, from a time that not all tell.
             if crossed.is_none()
                 && (now - last).abs() > GOES_ON * last.abs().max(now.abs())
@@ -199,43 +237,84 @@ impl Variation {
             // Δ∫P dt = (P⁻ − P⁺)·δt*.
             let works = self.works.done.elements.iter_mut().zip(before).enumerate();
             for (e, ([dissipated, supplied], ([dissipation, input], less))) in works {
-                let after = equations.bank.powers(e)[0];
-                let less = less.unwrap_or(dissipation - after.dissipation);
-                for (work, jump) in [(dissipated, less), (supplied, input - after.input)] {
+                let after = first(e);
+                let less = less.unwrap_or(dissipation - after[0]);
+                for (work, jump) in [(dissipated, less), (supplied, input - after[1])] {
                     work.iter_mut().zip(&later).for_each(|(work, later)| *work += jump * later);
                 }
             }
         }
-        let blocks = || vec![0.0; (STAGES + 1) * count];
-        let mut flows = Flows { elements: Vec::with_capacity(self.elements.len()), joints: blocks() };
-        for (e, element) in self.elements.iter().enumerate() {
-            let told = of_step(count, [&element.stroke, &element.rate], &element.inputs);
-            let mut own = [blocks(), blocks()];
-            let [dissipation, input] = &mut own;
-            equations.bank.vary_powers(e, &told, &element.law, &mut PowersVariation { dissipation, input });
-            flows.elements.push(own);
-        }
-        let model = &self.system.model;
-        for (i, flow) in flows.joints.chunks_exact_mut(count).enumerate() {
-            let node = &self.nodes[i];
-            each_loss_slope(&self.system, &node.v_now, |k, slope| {
-                let changes = node.v[k * count..].iter();
-                flow.iter_mut().zip(changes).for_each(|(flow, change)| *flow += slope * change);
-            });
-            for (p, parameter) in self.by.parameters.iter().enumerate() {
-                for seed in &parameter.seeds {
-                    match seed {
-                        Seed::Damping { joint, by } => flow[p] += by * felt(model, *joint, &node.v_now).2.powi(2),
-                        Seed::Friction { joint, by } => {
-                            let (_, _, speed) = felt(model, *joint, &node.v_now);
-                            flow[p] += by * speed * direction(model.friction_laws()[*joint], speed);
-                        }
-                        _ => {}
+    }
+
+    /// Adds what changes of what joints lose at node `i`.
+    fn flow_of_joints(&self, i: usize, flow: &mut [f64]) {
+        let (count, model, node) = (self.count(), &self.system.model, &self.nodes[i]);
+        each_loss_slope(&self.system, &node.v_now, |k, slope| {
+            let changes = node.v[k * count..].iter();
+            flow.iter_mut().zip(changes).for_each(|(flow, change)| *flow += slope * change);
+        });
+        for (p, parameter) in self.by.parameters.iter().enumerate() {
+            for seed in &parameter.seeds {
+                match seed {
+                    Seed::Damping { joint, by } => flow[p] += by * felt(model, *joint, &node.v_now).2.powi(2),
+                    Seed::Friction { joint, by } => {
+                        let (_, _, speed) = felt(model, *joint, &node.v_now);
+                        flow[p] += by * speed * direction(model.friction_laws()[*joint], speed);
                     }
+                    _ => {}
                 }
             }
         }
-        self.works.flows = Some(flows);
+    }
+
+    /// How many blocks of flows a step integrates: two of every element, and one of the joints; none where nobody asks for works.
+    pub(crate) fn flow_count(&self) -> usize {
+        if self.works.is_kept { 2 * self.elements.len() + 1 } else { 0 }
+    }
+
+    /// These flows at node `i`, whose changes are known, where elements are told these points and keep nothing.
+    pub(crate) fn flows_at<'p>(
+        &self,
+        equations: &Equations,
+        i: usize,
+        at: impl Fn(usize) -> Point<'p>,
+        flows: &mut [f64],
+    ) {
+        flows.fill(0.0);
+        let count = self.count();
+        if flows.is_empty() {
+            return;
+        }
+        let (elements, joints) = flows.split_at_mut(2 * self.elements.len() * count);
+        for (e, (own, element)) in elements.chunks_exact_mut(2 * count).zip(&self.elements).enumerate() {
+            let sums: [&mut [f64]; 2] = own.split_at_mut(count).into();
+            equations.bank.vary_powers_at(e, &at(e), &element.told(count, i, None), &element.law, sums);
+        }
+        self.flow_of_joints(i, joints);
+    }
+
+    /// Begins a step that integrates its flows itself, at whose start every element dissipates and is supplied with `first`, W.
+    pub(crate) fn begin_integrated(&mut self, equations: &Equations, first: impl Fn(usize) -> [f64; 2]) {
+        self.works.forget();
+        if self.works.is_kept {
+            self.begin_flows(equations, first);
+        }
+    }
+
+    /// What a step comes to that integrated its flows itself, and what every element dissipates and is supplied with at its end, W.
+    pub(crate) fn take_integrated(&mut self, works: &[f64], last: impl Fn(usize) -> [f64; 2]) {
+        if self.works.is_kept {
+            let last = (0..self.elements.len()).map(last).collect();
+            self.works.flows = Some(Flows::Integrated { whole: works.to_vec(), row: Vec::new(), last });
+        }
+    }
+
+    /// What it comes to until the row.
+    pub(crate) fn take_integrated_at_row(&mut self, works: impl Iterator<Item = f64>) {
+        if let Some(Flows::Integrated { row, .. }) = &mut self.works.flows {
+            row.clear();
+            row.extend(works);
+        }
     }
 
     /// Takes the flows of the accepted step in; the bank has not taken it yet.
@@ -245,13 +324,15 @@ impl Variation {
         }
         self.flow(equations);
         let (count, Works { done, flows, .. }) = (self.by.parameters.len(), &mut self.works);
-        let Some(Flows { elements, joints }) = flows.take() else { return };
-        let whole = (equations.bank.size(), 1.0);
-        for (done, flows) in done.elements.iter_mut().flatten().zip(elements.iter().flatten()) {
-            Flows::until(flows, count, whole, done);
-        }
-        Flows::until(&joints, count, whole, &mut done.joints);
-        done.last = (0..self.elements.len()).map(|e| equations.bank.powers(e)[STAGES].dissipation).collect();
+        let Some(flows) = flows.take() else { return };
+        flows.add(count, (equations.bank.size(), 1.0), (&mut done.elements, &mut done.joints));
+        done.last = match flows {
+            Flows::Integrated { last, .. } => last,
+            Flows::AtNodes { .. } => {
+                let last = |e: usize| equations.bank.powers(e)[STAGES];
+                (0..self.elements.len()).map(last).map(|last| [last.dissipation, last.input]).collect()
+            }
+        };
     }
 
     /// Works out what has changed of the works until a row, at θ of the step at hand or between two.
@@ -265,12 +346,8 @@ impl Variation {
         let (count, Works { done, flows, row, .. }) = (self.by.parameters.len(), &mut self.works);
         row.0.clone_from(&done.elements);
         row.1.clone_from(&done.joints);
-        if let Some((theta, Flows { elements, joints })) = theta.zip(flows.as_ref()) {
-            let part = (equations.bank.size(), theta);
-            for (row, flows) in row.0.iter_mut().flatten().zip(elements.iter().flatten()) {
-                Flows::until(flows, count, part, row);
-            }
-            Flows::until(joints, count, part, &mut row.1);
+        if let Some((theta, flows)) = theta.zip(flows.as_ref()) {
+            flows.add(count, (equations.bank.size(), theta), (&mut row.0, &mut row.1));
         }
     }
 

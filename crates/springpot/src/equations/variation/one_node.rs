@@ -152,10 +152,9 @@ impl Variation {
             return;
         }
         let moving: Vec<usize> = free.iter().copied().filter(|k| !rests(*k)).collect();
-        let (count, n, free) = (self.count(), self.nv(), self.of_run(&moving));
-        self.nodes[i].a.fill(0.0);
+        let free = self.of_run(&moving);
         if free.is_empty() {
-            return;
+            return self.nodes[i].a.fill(0.0);
         }
         let bank = &equations.bank;
         let force = (0..self.elements.len()).map(|e| match end {
@@ -169,21 +168,7 @@ impl Variation {
             self.measure(e, i);
             self.observe(equations, (e, i), theta, &at.elements[e].point(at.t));
         }
-        let mut solve = std::mem::take(&mut self.room.solve);
-        if solve.factor_part(&self.nodes[i].slopes.d_a, n, &free) {
-            let mut right = vec![0.0; free.len() * count];
-            for (sum, &row) in right.chunks_exact_mut(count.max(1)).zip(&free) {
-                self.add_unbalanced(i, row, sum);
-                self.add_pulled(i, row, |e| &self.elements[e].row[0], sum);
-            }
-            solve.solve_rows(&mut right, count);
-            for (own, &k) in right.chunks_exact(count.max(1)).zip(&free) {
-                self.nodes[i].a[k * count..][..count].iter_mut().zip(own).for_each(|(a, own)| *a = -own);
-            }
-        } else {
-            self.nodes[i].a.fill(f64::NAN);
-        }
-        self.room.solve = solve;
+        self.solve_node(i, &free);
     }
 
     /// What changes of the motion at θ of a step of size `h`, into node [`ROW`]: as rows have it between its ends, whose accelerations are known, but that

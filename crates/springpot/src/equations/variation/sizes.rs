@@ -78,7 +78,12 @@ impl Variation {
     ///
     /// A change is measured by how large it has been so far, that at the end of the step at hand included. What hardly changes beside the others is
     /// measured by them, and what begins like no power of t, alike on every scale of it, by the travel and the speed of the motion itself.
-    pub(crate) fn step_error(&self, rows: &[usize], StepErrors { errors, moved, rtol }: StepErrors) -> f64 {
+    pub(crate) fn step_error(&self, rows: &[usize], errors: StepErrors) -> f64 {
+        self.step_errors(rows, errors).into_iter().fold(0.0, f64::max)
+    }
+
+    /// The same of each parameter; 0 of one whose changes ended.
+    pub(crate) fn step_errors(&self, rows: &[usize], StepErrors { errors, moved, rtol }: StepErrors) -> Vec<f64> {
         let count = self.count();
         let (last, [sizes_q, sizes_v]) = (&self.nodes[STAGES], &self.sizes.so_far.motion);
         let sides = [(sizes_q, &last.q), (sizes_v, &last.v)];
@@ -98,11 +103,12 @@ impl Variation {
                 dispatch!(Level::new(), _ => add_shares(&mut sums, (rtol, *moved), own));
             }
         }
-        let known = sums.iter().enumerate().filter(|(p, _)| self.knows(*p)).map(|(_, sum)| sum);
-        known.fold(0.0, |worst, sum| {
+        let rms = |(p, sum): (usize, &f64)| {
             let rms = (sum / (2 * rows.len()) as f64).sqrt();
-            if rms.is_nan() { f64::INFINITY } else { worst.max(rms) }
-        })
+            let rms = if rms.is_nan() { f64::INFINITY } else { rms };
+            if self.knows(p) { rms } else { 0.0 }
+        };
+        sums.iter().enumerate().map(rms).collect()
     }
 
     /// The estimate of the step's error of what changes of the inner variables of laws, the worst one in units of its tolerance, `rtol` of its size.

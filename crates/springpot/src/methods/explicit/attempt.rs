@@ -7,9 +7,8 @@ use crate::account::recorder::Recorder;
 use crate::collocation::{RADAU_NODES, STAGES};
 use crate::equations::context::Context;
 use crate::equations::drives::drive;
-use crate::equations::kinks::Seen;
 use crate::equations::{Node, Within};
-use crate::methods::radau::attempt::{is_too_short, refuse_overflow};
+use crate::methods::chosen::{is_too_short, refuse_overflow, up_to_kink};
 use crate::methods::stepper::Target;
 use crate::system::error::RunError;
 
@@ -47,26 +46,29 @@ impl Explicit {
             let end = &self.step.end;
             let own = |k: usize| h * end.a[k].abs().max(origin.a[k].abs());
             errors.allow(cx, equations, (origin, h), self.tolerance, own);
+            let strict = recorder.settings.rtol;
+            let mut sizes = errors.noise.iter().zip(&errors.sized);
+            self.is_rounding = sizes.all(|(noise, [speed, _])| *noise > strict * speed);
             (error, worst) = self.estimate(recorder, h);
         }
         refuse_overflow(&cx.system.model, &self.step.end.v, target.to)?;
         if error <= 1.0 {
             self.tell(cx, recorder, target)?;
+            error = error.max(self.variation_error(recorder, target));
+        }
+        if error <= 1.0 {
             let error = error.max(LEAST);
             let before = self.kept.last.unwrap_or(error);
             let factor = SAFETY * error.powf(-EXPONENT) * before.powf(BEFORE);
             let [least, most] = CHANGE;
             let most = if std::mem::take(&mut self.was_rejected) { 1.0 } else { most };
             self.kept.last = Some(error);
-            return Ok(Ok(factor.clamp(least, most)));
+            return Ok(Ok(factor.clamp(least, most).min(self.kept.answering.longest(self.calm) / h)));
         }
         let mut smaller = h * if error.is_finite() { (SAFETY * error.powf(-0.125)).clamp(0.1, 0.9) } else { 0.25 };
-        // Where a kink makes the error, a step up to it has none of that.
         if error.is_finite() && recorder.equations.has_kinks() {
             self.take_nodes(cx, recorder, target)?;
-            if let Seen::Within(theta, _) = recorder.equations.look_for_kinks(h, &self.radau.step.errors.noise) {
-                smaller = smaller.max((1.01 * theta).min(0.9) * h);
-            }
+            smaller = up_to_kink(&mut recorder.equations, (h, smaller), &self.radau.step.errors.noise);
         }
         self.was_rejected = true;
         if is_too_short(target, smaller, recorder.settings.end) {
@@ -75,14 +77,13 @@ impl Explicit {
         Ok(Err(smaller))
     }
 
-    /// Estimate of the error in units of the tolerance, and the velocity with the largest share of it: that of order 5, corrected by that of
-    /// order 3 (Hairer, Nørsett & Wanner, Solving ODEs I, II.10).
+    /// Estimate of the error in units of the tolerance, and the velocity with the largest share of it.
     fn estimate(&mut self, recorder: &Recorder, h: f64) -> (f64, usize) {
         let (n, free) = (self.radau.step.origin.v.len(), recorder.equations.free());
         let Self { step, radau, sums, .. } = self;
         let [fifth, third] = sums;
-        step.sum_of(FIFTH, fifth);
-        step.sum_of(THIRD, third);
+        step.integrated.sum_of(FIFTH, fifth);
+        step.integrated.sum_of(THIRD, third);
         let (mut of_fifth, mut of_third, mut count) = (0.0, 0.0, 2 * free.len());
         let (mut worst, mut largest) = (free[0], -1.0);
         for (&k, [of_velocity, of_travel]) in free.iter().zip(&radau.step.errors.allowed) {
@@ -102,10 +103,7 @@ impl Explicit {
             of_third += net(third).powi(2);
             count += 1;
         }
-        if of_fifth == 0.0 {
-            return (0.0, worst);
-        }
-        (of_fifth / ((of_fifth + 0.01 * of_third) * count as f64).sqrt(), worst)
+        (corrected(of_fifth / count as f64, of_third / count as f64), worst)
     }
 
     /// Tells the recorder the end of the step, and what lies before it where that may change anything.
@@ -167,12 +165,15 @@ impl Explicit {
 
     fn too_small(&self, cx: Context, target: &Target, error: f64, worst: usize) -> RunError {
         let (t, h) = (target.from, target.size);
-        for (element, reading) in cx.system.elements.iter().zip(&self.step.found.readings) {
-            if let Err(why) = reading.check() {
-                return element.without_direction(t, why);
-            }
+        if let Some((e, why)) = self.step.found.lost {
+            return cx.system.elements[e].without_direction(t, why);
         }
         let subject = format!("joint \"{}\"", cx.system.model.v_labels()[worst].name);
         RunError::StepTooSmall { t, h, error, subject }
     }
+}
+
+/// The estimate of order 5, corrected by that of order 3 (Hairer, Nørsett & Wanner, Solving ODEs I, II.10), of their squares.
+pub(super) fn corrected(fifth: f64, third: f64) -> f64 {
+    if fifth == 0.0 || fifth.is_infinite() { fifth } else { fifth / (fifth + 0.01 * third).sqrt() }
 }

@@ -2,7 +2,8 @@
 
 use super::between::Between;
 use super::step::ExplicitStep;
-use super::stiffness::{Answering, Work};
+use super::stiffness::{Answering, Work, calm};
+use super::variation::Varied;
 use crate::account::recorder::Recorder;
 use crate::actuation::Forward;
 use crate::dynamics::Kinematics;
@@ -10,10 +11,10 @@ use crate::equations::context::Context;
 use crate::equations::drives::drive;
 use crate::equations::evaluate::Evaluation;
 use crate::equations::{Change, Equations, Look, Solved, Within};
-use crate::methods::radau::attempt::{is_too_short, no_convergence};
-use crate::methods::radau::sizes::Tolerance;
+use crate::methods::chosen::{Tolerance, is_too_short, no_convergence, solved, without_inertia};
 use crate::methods::radau::{self, Radau};
 use crate::methods::stepper::{ExplicitEffort, Stepper, Target, Trial};
+use crate::observe::Snapshot;
 use crate::signal::Agenda;
 use crate::system::Adaptive;
 use crate::system::definite::Definite;
@@ -21,8 +22,9 @@ use crate::system::error::RunError;
 use crate::system::settings::Settings;
 use serde::{Deserialize, Serialize};
 
-/// What a step may err, as a share of what the run may.
-const SHARE: f64 = 0.1;
+/// What a step may err, as a share of what the run may, and the tolerance from which on errors that grow with the motion, of long steps, take more.
+const SHARE: f64 = 0.05;
+const COARSE: f64 = 3e-7;
 
 /// Forward dynamics in explicit steps, and in those of Radau IIA while they are stiff.
 #[derive(Debug)]
@@ -31,6 +33,8 @@ pub(crate) struct Explicit {
     pub(super) radau: Radau,
     pub(super) step: ExplicitStep,
     pub(super) tolerance: Tolerance,
+    /// Size times spectral radius that a step has at most.
+    pub(super) calm: f64,
     /// Whether nothing but it was asked for.
     pub(super) is_forced: bool,
     /// Whether somebody always looks into the step.
@@ -38,10 +42,13 @@ pub(crate) struct Explicit {
     /// Size of the step that was tried last, s.
     pub(super) h: f64,
     pub(super) was_rejected: bool,
+    /// Whether rounding makes more of every velocity in the step than it may err.
+    pub(super) is_rounding: bool,
     pub(super) way: Vec<f64>,
     pub(super) inner: [Kinematics; 2],
     pub(super) sums: [Vec<f64>; 2],
     pub(super) xi: Vec<f64>,
+    pub(super) varied: Varied,
     pub(super) kept: Kept,
 }
 
@@ -58,11 +65,15 @@ pub(super) struct Kept {
     pub(super) work: Work,
     /// How many times as long each method is kept before the other one is tried: the explicit one, and Radau.
     pub(super) patience: [u32; 2],
+    /// Whether what changes of the accelerations at the start is that before a kink.
+    pub(super) is_behind_kink: bool,
     /// Error of the last explicit step kept.
     pub(super) last: Option<f64>,
     /// Explicit steps near the edge of stability, and those off it since.
     pub(super) stiff_steps: u32,
     pub(super) other_steps: u32,
+    /// Explicit steps in a row that know no more than rounding leaves.
+    pub(super) rounding_steps: u32,
     pub(super) answering: Answering,
     pub(super) evaluations: u64,
     pub(super) steps: u64,
@@ -78,20 +89,23 @@ pub(crate) struct StepperState {
 
 impl Explicit {
     pub(crate) fn new(cx: Context, forward: &Forward, settings: &Settings) -> Self {
-        let rtol = SHARE * settings.rtol;
+        let share = SHARE / (1.0 + (settings.rtol / COARSE).sqrt());
         let model = &cx.system.model;
         Self {
             radau: Radau::new(cx, forward, settings),
             step: ExplicitStep::new(cx.system, forward),
-            tolerance: Tolerance { rtol, atol: SHARE * settings.atol.unwrap_or(0.0) },
+            tolerance: Tolerance { rtol: share * settings.rtol, atol: share * settings.atol.unwrap_or(0.0) },
+            calm: calm(settings.rtol),
             is_forced: settings.adaptive == Adaptive::Explicit,
             looks_into: Definite::of(model).is_some(),
             h: 0.0,
             was_rejected: false,
+            is_rounding: false,
             way: Vec::new(),
             inner: std::array::from_fn(|_| Kinematics::new(model)),
             sums: Default::default(),
             xi: Vec::new(),
+            varied: Varied::new(model),
             kept: Kept::new(),
         }
     }
@@ -125,21 +139,9 @@ impl Explicit {
         step: &Target,
         take: impl FnOnce(&mut Equations, &mut Solved) -> T,
     ) -> T {
-        let Recorder { evaluations, equations, scratch, settings, .. } = recorder;
         let Self { radau, step: own, xi, .. } = self;
         let mut within = Between { step: own, origin: &radau.step.origin, h: step.size, xi };
-        let mut solved = Solved {
-            from: step.from,
-            to: step.to,
-            size: step.size,
-            evaluations,
-            scratch,
-            within: &mut within,
-            noise: &radau.step.errors.noise,
-            rtol: settings.rtol,
-            end: settings.end,
-        };
-        take(equations, &mut solved)
+        solved(recorder, step, (&mut within, &radau.step.errors.noise), take)
     }
 
     /// Goes on to the end of the step.
@@ -150,7 +152,7 @@ impl Explicit {
         own.accept(equations.free());
         self.kept.steps += 1;
         if equations.take_kink() {
-            self.kept.last = None;
+            (self.kept.last, self.kept.is_behind_kink) = (None, true);
             self.begin_anew();
         }
     }
@@ -165,9 +167,11 @@ impl Kept {
             taken: 0,
             work: Work::default(),
             patience: [1; 2],
+            is_behind_kink: false,
             last: None,
             stiff_steps: 0,
             other_steps: 0,
+            rounding_steps: 0,
             answering: Answering::default(),
             evaluations: 0,
             steps: 0,
@@ -226,6 +230,22 @@ impl Stepper for Explicit {
 
     fn judge(&mut self, cx: Context, recorder: &mut Recorder, step: Target, next: f64) -> Result<Trial, RunError> {
         self.radau.judge(cx, recorder, step, next)
+    }
+
+    fn vary(&mut self, cx: Context, recorder: &mut Recorder, step: &Target) -> Result<(), RunError> {
+        if self.kept.is_stiff {
+            return self.radau.vary(cx, recorder, step);
+        }
+        // What shares in the choice of steps was worked out with the step.
+        let shares = recorder.variation.as_ref().is_some_and(|variation| variation.shares_in_steps());
+        if shares || self.vary_step(recorder, step) { Ok(()) } else { Err(without_inertia(step.from)) }
+    }
+
+    fn vary_within(&mut self, recorder: &mut Recorder, within: Option<(f64, f64)>, shown: &Snapshot) {
+        match self.kept.is_stiff {
+            true => self.radau.vary_within(recorder, within, shown),
+            false => self.vary_row(recorder, within, shown),
+        }
     }
 
     fn starts_with(&self) -> Option<[&[f64]; 2]> {
@@ -290,7 +310,9 @@ impl Stepper for Explicit {
             true => self.radau.accept(cx, recorder, step)?,
             false => self.go_on(&mut recorder.equations, step),
         }
-        self.reconsider(&recorder.equations, (step.to, step.size), recorder.settings.end)
+        let settings = &recorder.settings;
+        let longest = self.longest_step(cx, settings);
+        self.reconsider(&recorder.equations, (step.to, step.size), (longest, settings.end))
     }
 
     fn cross(&mut self, cx: Context, recorder: &mut Recorder, after: f64) -> Result<(), RunError> {

@@ -7,10 +7,12 @@
 
 mod attempt;
 mod between;
+mod integrated;
 mod method;
 mod radius;
 mod step;
 mod stiffness;
 mod tableau;
+mod variation;
 
 pub(crate) use method::{Explicit, StepperState};

@@ -1,7 +1,9 @@
 //! One step of the explicit method: its stages, its end, and what lies between.
 
-use super::tableau::{ALL_STAGES, LAST_TERMS, LEADS, PLACES, STAGES, TERMS, Weights};
-use crate::account::works::{Works, polynomial};
+use super::integrated::Integrated;
+use super::tableau::{ALL_STAGES, LEADS, PLACES, STAGES};
+use super::variation::StageSeen;
+use crate::account::works::Works;
 use crate::actuation::Forward;
 use crate::collocation;
 use crate::dynamics::Kinematics;
@@ -22,7 +24,7 @@ pub(super) struct Place {
     pub(super) v: Vec<f64>,
     pub(super) a: Vec<f64>,
     /// Tangent vector from the start of the step, and its rate.
-    xi: Vec<f64>,
+    pub(super) xi: Vec<f64>,
     xi_rate: Vec<f64>,
 }
 
@@ -30,26 +32,22 @@ pub(super) struct Place {
 ///
 /// What is integrated are ξ, the tangent vector from the start with q = q_0 ⊕ ξ, by its rate J_r(ξ)⁻¹ v; v; and the works of [`Works`], by the
 /// powers.
-/// Rows of `slopes` and `terms` hold these, one behind the other.
+/// Rows of what is `integrated` hold these, one behind the other.
 #[derive(Debug)]
 pub(super) struct ExplicitStep {
     model: Arc<Model>,
     pub(super) found: AtOnce,
-    slopes: [Vec<f64>; ALL_STAGES],
-    /// Of the polynomial between the ends.
-    terms: [Vec<f64>; TERMS],
+    pub(super) integrated: Integrated,
     /// At the stage under way, and at the end.
     at: Place,
     pub(super) end: Place,
-    /// What the step changes.
-    change: Vec<f64>,
     /// Forces of the elements and the links at the end.
     pub(super) forces: Vec<f64>,
     pub(super) kinematics: Kinematics,
-    sum: Vec<f64>,
-    /// Whether the first slopes are those of the origin, and whether the terms are those of the step.
+    /// The stages as they were seen, where what parameters change is asked for.
+    pub(super) seen: Option<Box<[StageSeen; ALL_STAGES]>>,
+    /// Whether the first slopes are those of the origin.
     is_begun: bool,
-    is_dense: bool,
     /// Time of the last stage, s.
     t_end: f64,
     pub(super) evaluations: u64,
@@ -75,16 +73,13 @@ impl ExplicitStep {
         Self {
             model: model.clone(),
             found: AtOnce::new(system, free),
-            slopes: std::array::from_fn(|_| vec![0.0; n]),
-            terms: std::array::from_fn(|_| vec![0.0; n]),
+            integrated: Integrated::new(n),
             at: Place::new(model),
             end: Place::new(model),
-            change: vec![0.0; n],
             forces: vec![0.0; system.elements.len()],
             kinematics: Kinematics::new(model),
-            sum: vec![0.0; n],
+            seen: system.sensitivity.as_ref().map(|_| Box::default()),
             is_begun: false,
-            is_dense: false,
             t_end: 0.0,
             evaluations: 0,
         }
@@ -106,30 +101,25 @@ impl ExplicitStep {
         origin: &Origin,
         (h, t_end): (f64, f64),
     ) -> Result<bool, RunError> {
-        (self.is_dense, self.t_end) = (false, t_end);
+        self.t_end = t_end;
+        self.integrated.begin();
         if !self.is_begun {
-            self.sum.fill(0.0);
             if !self.slope(cx, equations, origin, (0, 0.0))? {
                 return Ok(false);
             }
             self.is_begun = true;
         }
         for stage in 1..=STAGES {
-            self.lead(LEADS[stage], h);
+            self.integrated.lead(LEADS[stage], h);
             if !self.slope(cx, equations, origin, (stage, h))? {
                 return Ok(false);
             }
         }
-        self.change.copy_from_slice(&self.sum);
+        self.integrated.end();
         std::mem::swap(&mut self.at, &mut self.end);
         self.forces.copy_from_slice(self.found.forces.values());
         std::mem::swap(&mut self.kinematics, &mut self.found.kinematics);
         Ok(true)
-    }
-
-    /// h Σ w_j of the slopes.
-    fn lead(&mut self, weights: Weights, h: f64) {
-        combine(&self.slopes, weights, h, &mut self.sum);
     }
 
     /// The slopes of a stage, whose way from the origin is `sum`.
@@ -143,7 +133,7 @@ impl ExplicitStep {
         // Rows and looks inside, whose stages come later, do not count.
         self.evaluations += u64::from(stage <= STAGES);
         let n = self.model.nv();
-        let Self { model, at, sum, found, slopes, t_end, .. } = &mut *self;
+        let Self { model, at, found, integrated: Integrated { slopes, sum, .. }, seen, t_end, .. } = self;
         let [way, push] = [&sum[..n], &sum[n..2 * n]];
         at.go(model, origin, [way, push]);
         let c = PLACES[stage];
@@ -153,7 +143,7 @@ impl ExplicitStep {
         };
         let slope = &mut slopes[stage];
         let (motion, powers) = slope.split_at_mut(2 * n);
-        let Place { q, v, a, xi, xi_rate } = at;
+        let Place { q, v, a, xi, xi_rate } = &mut *at;
         let is_found = equations.accelerate_at(cx, found, (t, node), [q, v, a], powers)?;
         let (turn, speed) = motion.split_at_mut(n);
         turn.fill(0.0);
@@ -165,13 +155,10 @@ impl ExplicitStep {
         for &k in equations.free() {
             (turn[k], speed[k]) = (rate[k], a[k]);
         }
+        if let Some(seen) = seen {
+            seen[stage].take(t, at, found, &equations.bank);
+        }
         Ok(is_found && powers.iter().all(|power| power.is_finite()))
-    }
-
-    /// Σ w_j of the slopes of the step.
-    pub(super) fn sum_of(&self, weights: Weights, sum: &mut Vec<f64>) {
-        sum.resize(self.change.len(), 0.0);
-        combine(&self.slopes, weights, 1.0, sum);
     }
 
     /// Works out the polynomial between the ends of the step, of size `h`, unless that was done.
@@ -185,42 +172,38 @@ impl ExplicitStep {
         origin: &Origin,
         h: f64,
     ) -> Result<(), RunError> {
-        if std::mem::replace(&mut self.is_dense, true) {
+        if self.integrated.is_dense() {
             return Ok(());
         }
         for stage in STAGES + 1..ALL_STAGES {
-            self.lead(LEADS[stage], h);
+            self.integrated.lead(LEADS[stage], h);
             self.slope(cx, equations, origin, (stage, h))?;
         }
-        let Self { slopes, terms, change, .. } = self;
-        let [way, first, second, last @ ..] = terms;
-        for (at, change) in change.iter().enumerate() {
-            let [start, end] = [slopes[0][at], slopes[STAGES][at]];
-            way[at] = *change;
-            first[at] = h * start - change;
-            second[at] = 2.0 * change - h * (end + start);
-        }
-        last.iter_mut().zip(LAST_TERMS).for_each(|(term, weights)| combine(slopes, weights, h, term));
+        self.integrated.fill_between(h);
         Ok(())
     }
 
-    /// Number `at` of what is integrated from the start of the step to θ, and its derivative by θ; the polynomial is there.
-    fn between(&self, at: usize, theta: f64) -> [f64; 2] {
-        polynomial(std::array::from_fn(|term| self.terms[term][at]), theta)
+    /// What element `e` dissipates and is supplied with at a stage, W.
+    pub(super) fn power(&self, stage: usize, e: usize) -> [f64; 2] {
+        let from = 2 * self.model.nv() + OWN_POWERS + 2 * e;
+        [0, 1].map(|which| self.integrated.slopes[stage][from + which])
     }
 
     /// What the step does to the works, and how within it, where that was worked out.
     pub(super) fn tell_works(&self, works: &mut Works) {
         let from = 2 * self.model.nv();
-        works.take(&self.change[from..], self.is_dense.then(|| self.terms.each_ref().map(|term| &term[from..])));
+        works.take(
+            &self.integrated.change[from..],
+            self.integrated.terms().map(|terms| terms.map(|term| &term[from..])),
+        );
     }
 
     /// Goes on to the end of the step.
     pub(super) fn accept(&mut self, free: &[usize]) {
-        let (first, rest) = self.slopes.split_at_mut(1);
-        std::mem::swap(&mut first[0], &mut rest[STAGES - 1]);
+        let slopes = &mut self.integrated.slopes;
+        slopes.swap(0, STAGES);
         // Seen from there the tangent vector begins anew.
-        free.iter().for_each(|&k| first[0][k] = self.end.v[k]);
+        free.iter().for_each(|&k| slopes[0][k] = self.end.v[k]);
     }
 
     /// The accelerations at any time of the step, from q and v there.
@@ -234,7 +217,7 @@ impl ExplicitStep {
         t: f64,
         [q, v, a]: [&mut [f64]; 3],
     ) -> Result<(), RunError> {
-        let powers = &mut self.sum[2 * self.model.nv()..];
+        let powers = &mut self.integrated.sum[2 * self.model.nv()..];
         equations.accelerate_at(cx, &mut self.found, (t, BETWEEN), [q, v, a], powers).map(|_| ())
     }
 
@@ -251,7 +234,7 @@ impl ExplicitStep {
         (way, size): (&mut [f64], f64),
     ) -> Result<(), RunError> {
         let n = self.model.nv();
-        let Self { model, at, sum, found, slopes, .. } = self;
+        let Self { model, at, found, integrated: Integrated { slopes, sum, .. }, .. } = self;
         way.iter_mut().for_each(|way| *way *= size);
         at.go(model, origin, [&way[..n], &way[n..]]);
         let Place { q, v, a, xi, xi_rate } = at;
@@ -267,7 +250,7 @@ impl ExplicitStep {
 
     /// What the step adds to velocity `k` until θ.
     pub(super) fn push(&self, k: usize, theta: f64) -> f64 {
-        self.between(self.model.nv() + k, theta)[0]
+        self.integrated.between(self.model.nv() + k, theta)[0]
     }
 
     /// Fills q, v and a of the joints that forces drive at θ of the step from `origin`, of size `h`, whose polynomial is there.
@@ -285,8 +268,8 @@ impl ExplicitStep {
         v.copy_from_slice(&origin.v);
         a.fill(0.0);
         for &k in equations.free() {
-            let [push, slope] = self.between(n + k, theta);
-            xi[k] = self.between(k, theta)[0];
+            let [push, slope] = self.integrated.between(n + k, theta);
+            xi[k] = self.integrated.between(k, theta)[0];
             (v[k], a[k]) = (origin.v[k] + push, slope / h);
         }
         self.model.integrate_into(&origin.q, xi, q);
@@ -305,13 +288,4 @@ impl Place {
             model.integrate_into(&origin.q, way, q);
         }
     }
-}
-
-/// sum ← h Σ w_j of the slopes.
-fn combine(slopes: &[Vec<f64>; ALL_STAGES], weights: Weights, h: f64, sum: &mut [f64]) {
-    sum.fill(0.0);
-    for &(j, weight) in weights {
-        sum.iter_mut().zip(&slopes[j]).for_each(|(sum, slope)| *sum += weight * slope);
-    }
-    sum.iter_mut().for_each(|sum| *sum *= h);
 }

@@ -9,9 +9,22 @@ use crate::equations::Equations;
 use crate::equations::context::Context;
 use crate::system::error::RunError;
 
-/// Size times spectral radius at which stability may keep steps short: on the imaginary axis, and on the real one.
-const NEAR: f64 = 2.5;
+/// Size times spectral radius that a step has at most, at tolerances from 1e-6 on, and how that falls with the tolerance below: well before the edge of
+/// stability, 6.1 on the real axis, what answers fast dies away no longer, and rows between the ends know least of it. Steps near that are kept short
+/// by stability, not by errors.
+const CALM: f64 = 2.5;
+const CALM_FROM: f64 = 1e-6;
+const CALMER: f64 = 1.0 / 16.0;
+const NEAR: f64 = 0.9;
 const EDGE: f64 = 6.1;
+
+/// That of a run of this tolerance.
+pub(super) fn calm(rtol: f64) -> f64 {
+    CALM * (rtol / CALM_FROM).min(1.0).powf(CALMER)
+}
+
+/// The share of the longest step from which on a step is as long as it may be.
+const LONG: f64 = 0.5;
 
 /// So many steps near the edge, with not as many off it in between, have the other method tried.
 const STIFF_STEPS: u32 = 15;
@@ -86,6 +99,11 @@ impl Answering {
         if self.looks < ENOUGH { 0.0 } else { self.rate.exp() }
     }
 
+    /// The longest step in which all that answers fast dies away, s.
+    pub(super) fn longest(&self, calm: f64) -> f64 {
+        calm / self.rate()
+    }
+
     fn take(&mut self, growth: f64) {
         self.looks += 1;
         // What swings grows now more, now less; the first looks are those of a way that is not yet one of the fastest.
@@ -133,22 +151,32 @@ impl Explicit {
         Ok(())
     }
 
-    /// Counts in the step that was accepted, which ended at t, and changes to the other method where that has become worth it; `end` is that of
-    /// the run.
+    /// Counts in the step that was accepted, which ended at t, and changes to the other method where that has become worth it; `longest` is the size that
+    /// steps may have, `end` that of the run.
     ///
     /// # Errors
     /// [`RunError::TooStiff`] where it must not.
-    pub(super) fn reconsider(&mut self, equations: &Equations, (t, h): (f64, f64), end: f64) -> Result<(), RunError> {
-        let (stiffness, is_forced) = (h * self.kept.answering.rate(), self.is_forced);
+    pub(super) fn reconsider(
+        &mut self,
+        equations: &Equations,
+        (t, h): (f64, f64),
+        (longest, end): (f64, f64),
+    ) -> Result<(), RunError> {
+        let (stiffness, near, is_forced) = (h * self.kept.answering.rate(), NEAR * self.calm, self.is_forced);
         let kept = &mut self.kept;
         if is_forced {
-            if kept.count_stiff(stiffness, EDGE, t) && end - t > TOO_MANY * h {
+            if kept.count_stiff(stiffness, near, t) && end - t > TOO_MANY * h {
                 return Err(RunError::TooStiff { t, h });
             }
             return Ok(());
         }
         kept.taken += 1;
-        let changes = if kept.is_tried {
+        kept.rounding_steps = if self.is_rounding && !kept.is_stiff { kept.rounding_steps + 1 } else { 0 };
+        let changes = if kept.rounding_steps > STIFF_STEPS {
+            // Stages weigh rounding eight times, the other method's do not.
+            (kept.is_tried, kept.patience[1]) = (false, MOST_PATIENCE);
+            true
+        } else if kept.is_tried {
             if kept.taken == WARM {
                 kept.begin_work(t);
             }
@@ -179,7 +207,9 @@ impl Explicit {
                 if kept.taken == due - WINDOW {
                     kept.begin_work(t);
                 }
-                kept.count_stiff(stiffness, NEAR, t) || kept.taken >= due
+                // Of steps that may be no longer the other method's take less.
+                let stiffness = if h >= LONG * longest { f64::INFINITY } else { stiffness };
+                kept.count_stiff(stiffness, near, t) || kept.taken >= due
             };
             if is_due {
                 kept.other_rate = kept.work.rate(t);
@@ -221,6 +251,6 @@ impl Kept {
     fn change_over(&mut self) {
         self.is_stiff = !self.is_stiff;
         (self.last, self.taken, self.stiff_steps, self.other_steps) = (None, 0, 0, 0);
-        self.switches += 1;
+        (self.is_behind_kink, self.switches) = (true, self.switches + 1);
     }
 }

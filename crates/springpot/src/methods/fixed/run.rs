@@ -15,6 +15,7 @@ use crate::equations::resistance::joint_loss;
 use crate::fractional::Form;
 use crate::law::Course;
 use crate::methods::stepper::{Stepper, Target};
+use crate::observe::Snapshot;
 use crate::signal::Agenda;
 use crate::system::error::RunError;
 use crate::system::fixed_step::FixedStep;
@@ -195,7 +196,7 @@ impl Stepper for Fixed {
         Ok(Ok(self.by.step))
     }
 
-    fn vary_within(&mut self, recorder: &mut Recorder, within: Option<(f64, f64)>) {
+    fn vary_within(&mut self, recorder: &mut Recorder, within: Option<(f64, f64)>, _: &Snapshot) {
         match within {
             None => {
                 self.accelerate_variation(recorder, 0);

@@ -6,16 +6,9 @@ use crate::account::recorder::Recorder;
 use crate::collocation::STAGES;
 use crate::equations::TANGENTS;
 use crate::equations::context::Context;
-use crate::equations::kinks::Seen;
+use crate::methods::chosen::{is_too_short, refuse_overflow, up_to_kink};
 use crate::methods::stepper::Target;
-use crate::model::Model;
 use crate::system::error::RunError;
-
-/// Shortest step as a share of the run, and of the time that has passed.
-const SHORTEST_STEP: [f64; 2] = [1e-20, 2.0 * f64::EPSILON];
-
-/// Velocities whose squares are finite.
-const FASTEST: f64 = 1e150;
 
 /// Growth that is not worth a new size.
 const KEPT: f64 = 1.2;
@@ -31,25 +24,6 @@ enum Worst {
     Energy,
     /// The iteration did not converge, for this velocity least of all.
     Newton(usize),
-}
-
-/// Whether no step of a run that ends at `end` may be as short as `h` where `tried` was not short enough, or ends where that one did.
-pub(in crate::methods) fn is_too_short(tried: &Target, h: f64, end: f64) -> bool {
-    let [of_run, of_time] = SHORTEST_STEP;
-    h < (of_run * end).max(of_time * tried.from) || tried.from + h >= tried.to
-}
-
-/// Refuses velocities at `t` whose energy is beyond double precision.
-pub(in crate::methods) fn refuse_overflow(model: &Model, v: &[f64], t: f64) -> Result<(), RunError> {
-    let Some(k) = v.iter().position(|v| v.abs() > FASTEST) else { return Ok(()) };
-    Err(RunError::NotFinite { t, what: format!("v.{}", model.v_labels()[k].name), value: f64::INFINITY })
-}
-
-/// That no step as short as `tried` leads on, by its fastest joint: velocities `v` at its end.
-pub(in crate::methods) fn no_convergence(tried: &Target, model: &Model, v: &[f64]) -> RunError {
-    let speeds = v.iter().map(|v| v.abs()).enumerate();
-    let fastest = speeds.max_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(0, |(k, _)| k);
-    RunError::NoConvergence { t: tried.from, h: tried.size, joint: model.v_labels()[fastest].name.clone() }
 }
 
 impl Radau {
@@ -89,11 +63,8 @@ impl Radau {
         if error > 1.0 || error.is_nan() {
             let mut smaller =
                 h * if error.is_finite() { (safety * error.powf(-EXPONENT)).clamp(0.1, 0.9) } else { 0.25 };
-            // Where a kink makes the error, a step up to it has none of that.
-            if error.is_finite()
-                && let Seen::Within(theta, _) = recorder.equations.look_for_kinks(h, &self.step.errors.noise)
-            {
-                smaller = smaller.max((1.01 * theta).min(0.9) * h);
+            if error.is_finite() {
+                smaller = up_to_kink(&mut recorder.equations, (h, smaller), &self.step.errors.noise);
             }
             if is_too_short(target, smaller, recorder.settings.end) {
                 return Err(step_too_small(cx, recorder, (t, h), error, worst));

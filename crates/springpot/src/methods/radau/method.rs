@@ -1,8 +1,6 @@
 //! The method behind the driver.
 
-use super::attempt::{is_too_short, no_convergence};
 use super::dense::{Dense, Scratch};
-use super::sizes::Tolerance;
 use super::start;
 use super::step::{Carried, RadauStep};
 use crate::account::recorder::Recorder;
@@ -14,10 +12,11 @@ use crate::equations::drives::drive;
 use crate::equations::evaluate::Evaluation;
 use crate::equations::{Change, Equations, Look, ROW, Solved, Within};
 use crate::law::Course;
+use crate::methods::chosen::{Tolerance, is_too_short, no_convergence, solved, without_inertia};
 use crate::methods::stepper::{Behind, Stepper, Target, Trial};
+use crate::observe::Snapshot;
 use crate::signal::Agenda;
 use crate::system::error::RunError;
-use crate::system::sensitivity::SensitivityError;
 use crate::system::settings::Settings;
 use serde::{Deserialize, Serialize};
 
@@ -111,20 +110,8 @@ impl Radau {
         step: &Target,
         take: impl FnOnce(&mut Equations, &mut Solved) -> T,
     ) -> T {
-        let Recorder { evaluations, equations, scratch, settings, .. } = recorder;
         let mut within = Dense { step: &self.step, h: step.size, scratch: &mut self.scratch };
-        let mut solved = Solved {
-            from: step.from,
-            to: step.to,
-            size: step.size,
-            evaluations,
-            scratch,
-            within: &mut within,
-            noise: &self.step.errors.noise,
-            rtol: settings.rtol,
-            end: settings.end,
-        };
-        take(equations, &mut solved)
+        solved(recorder, step, (&mut within, &self.step.errors.noise), take)
     }
 }
 
@@ -205,17 +192,14 @@ impl Stepper for Radau {
             None => self.step.vary(equations, variation, size, t_end),
         };
         equations.stand(leaning);
-        if is_regular {
-            return Ok(());
-        }
-        Err(SensitivityError::Unknown { what: format!("a motion without inertia at t = {} s", step.from) }.into())
+        if is_regular { Ok(()) } else { Err(without_inertia(step.from)) }
     }
 
     fn starts_with(&self) -> Option<[&[f64]; 2]> {
         Some([&self.step.origin.v, &self.step.origin.a])
     }
 
-    fn vary_within(&mut self, recorder: &mut Recorder, within: Option<(f64, f64)>) {
+    fn vary_within(&mut self, recorder: &mut Recorder, within: Option<(f64, f64)>, _: &Snapshot) {
         let Recorder { equations, variation: Some(variation), .. } = recorder else { return };
         if let (Some((_, size)), true) = (within, variation.is_unsolved())
             && let Some(t_end) = variation.follow_columns()

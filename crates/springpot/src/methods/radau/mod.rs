@@ -5,14 +5,13 @@
 //! in time at every fractional order; rows between steps come from the cubic through the accelerations, integrated twice.
 //! Source of the method: Hairer & Wanner, Solving ODEs II, IV.5 and IV.8.
 
-pub(super) mod attempt;
+mod attempt;
 mod cross;
 mod dense;
 mod errors;
 mod estimate;
 mod method;
 mod newton;
-pub(super) mod sizes;
 mod stages;
 mod start;
 mod step;

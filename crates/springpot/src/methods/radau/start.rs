@@ -1,12 +1,12 @@
 //! The first step.
 
 use super::errors::jump_travel;
-use super::sizes::Tolerance;
 use super::step::RadauStep;
 use crate::dynamics::Kinematics;
 use crate::equations::context::Context;
 use crate::equations::{ElementAtStart, Equations, solve_mass};
 use crate::law::Term;
+use crate::methods::chosen::Tolerance;
 
 /// The first step, s: a small share of the time in which the system answers its accelerations, a power-of-two share of it where
 /// the layer at t = 0 asks for less: h max_i |(M⁻¹ g)_i|/tol_i |F(h) − F(0)| ≤ 1 with F(h) − F(0) ≈ c h^−alpha |x(h) − x(0)|.

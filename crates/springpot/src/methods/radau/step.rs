@@ -1,8 +1,6 @@
 //! What one step of Radau IIA(5) in the accelerations works on: its start and its stages.
 
-use super::errors::Errors;
 use super::newton::Contraction;
-use super::sizes::{Sizes, Tolerance};
 use super::system::StageSystem;
 use super::variation::TurnedStages;
 use crate::actuation::Forward;
@@ -10,6 +8,7 @@ use crate::collocation::radau::A;
 use crate::collocation::{STAGES, TABLEAU};
 use crate::dynamics::Kinematics;
 use crate::equations::{Equations, Node, Origin, Solve};
+use crate::methods::chosen::{Errors, Sizes, Tolerance};
 use crate::model::Model;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;

@@ -49,7 +49,7 @@ pub(in crate::methods) struct Sizes {
 }
 
 impl Sizes {
-    pub(super) fn new(q: &[f64], nv: usize) -> Self {
+    pub(in crate::methods) fn new(q: &[f64], nv: usize) -> Self {
         let zero = vec![0.0; nv];
         Self {
             from: q.to_vec(),
@@ -68,7 +68,7 @@ impl Sizes {
     }
 
     /// Forces may begin like no power of t, alike on every scale of time: what they lead to at first is measured by what it soon is.
-    pub(super) fn set_steep(&mut self) {
+    pub(in crate::methods) fn set_steep(&mut self) {
         self.onset = ONSET;
     }
 
@@ -90,7 +90,7 @@ impl Sizes {
     }
 
     /// Where accelerations `a` begin at `t` in a system that answers them at the rate `omega` (rad/s).
-    pub(super) fn expect(&mut self, t: f64, a: &[f64], omega: f64, is_singular: bool) {
+    pub(in crate::methods) fn expect(&mut self, t: f64, a: &[f64], omega: f64, is_singular: bool) {
         (self.since, self.omega, self.is_singular) = (t, omega, is_singular);
         let finite = |a: &f64| if a.is_finite() { a.abs() } else { 0.0 };
         self.to_travel = a.iter().map(finite).collect();
@@ -98,42 +98,42 @@ impl Sizes {
     }
 
     /// Changes of the accelerations by `ahead` are to come within `stretch` seconds from what began last, till which nothing falls short of them.
-    pub(super) fn look_ahead(&mut self, ahead: Vec<f64>, stretch: f64) {
+    pub(in crate::methods) fn look_ahead(&mut self, ahead: Vec<f64>, stretch: f64) {
         (self.ahead, self.stretch, self.looked) = (ahead, stretch, self.since + stretch);
     }
 
     /// Until when what comes is known, s.
-    pub(super) fn looked(&self) -> f64 {
+    pub(in crate::methods) fn looked(&self) -> f64 {
         self.looked
     }
 
     /// When what acts began last, s.
-    pub(super) fn since(&self) -> f64 {
+    pub(in crate::methods) fn since(&self) -> f64 {
         self.since
     }
 
     /// Whether velocity `k` has been 0 so far.
-    pub(super) fn rests(&self, k: usize) -> bool {
+    pub(in crate::methods) fn rests(&self, k: usize) -> bool {
         self.speed[k] == 0.0
     }
 
     /// The time in which the system answers what began last, s.
-    pub(super) fn response(&self) -> f64 {
+    pub(in crate::methods) fn response(&self) -> f64 {
         self.omega.recip()
     }
 
     /// The largest speed of velocity `k` until `t`.
-    pub(super) fn speed(&self, k: usize, t: f64) -> f64 {
+    pub(in crate::methods) fn speed(&self, k: usize, t: f64) -> f64 {
         self.speed[k].max(self.to_speed[k] * self.time(t)).max(self.coming(k, t))
     }
 
     /// The speed of velocity `k` until `t` by what was seen ahead.
-    pub(super) fn coming(&self, k: usize, t: f64) -> f64 {
+    pub(in crate::methods) fn coming(&self, k: usize, t: f64) -> f64 {
         self.ahead[k] * self.elapsed(t).min(self.stretch)
     }
 
     /// The largest travel of velocity `k` until `t`.
-    pub(super) fn travel(&self, k: usize, t: f64) -> f64 {
+    pub(in crate::methods) fn travel(&self, k: usize, t: f64) -> f64 {
         let ahead = self.ahead[k] * self.elapsed(t).min(self.stretch).powi(2);
         self.travel[k].max(self.to_travel[k] * self.time(t).powi(2)).max(ahead)
     }
