@@ -38,9 +38,55 @@ pub fn value(metric: &Metric, t: &[f64], values: &[f64]) -> f64 {
 
 /// The derivatives of a metric where the values change by each of `changes`, row by row: exactly those of the number that [`value`] is, with the same
 /// rows at its extremes and within its band. NaN where the metric is, where a row that it rests on has none, and where it bends (the `rms` of zeros).
-pub fn gradient(metric: &Metric, t: &[f64], values: &[f64], changes: &[&[f64]]) -> Vec<f64> {
+/// Where an event ends the case the last row moves along the event, as `end` says.
+pub fn gradient(metric: &Metric, (t, values): (&[f64], &[f64]), changes: &[&[f64]], end: Option<End<'_>>) -> Vec<f64> {
     let Some((slopes, rows)) = slopes_of(metric, t, values) else { return vec![f64::NAN; changes.len()] };
-    changes.iter().map(|change| slopes.along(|k| change[rows[k]])).collect()
+    let Some(End { along, later }) = end else {
+        return changes.iter().map(|change| slopes.along(|k| change[rows[k]])).collect();
+    };
+    let (last, by_end) = (t.len() - 1, end_slope(metric, t, values));
+    let of = |(p, change): (usize, &&[f64])| {
+        // t itself changes as the end does.
+        let at_end = if metric.of == TIME { later[p] } else { along[p] };
+        let by_rows = slopes.along(|k| if rows[k] == last { at_end } else { change[rows[k]] });
+        if by_end == 0.0 { by_rows } else { by_rows + by_end * later[p] }
+    };
+    changes.iter().enumerate().map(of).collect()
+}
+
+/// The column of the time.
+const TIME: &str = "t";
+
+/// How the last row of a case moves that an event ends, by each parameter.
+#[derive(Debug, Clone, Copy)]
+pub struct End<'a> {
+    /// The value there, along the event.
+    pub along: &'a [f64],
+    /// Its time, s.
+    pub later: &'a [f64],
+}
+
+/// Whether a metric hangs on the last row, by its value or by its time.
+pub(crate) fn rests_on_end(metric: &Metric, t: &[f64], values: &[f64]) -> bool {
+    let by_value = shares(metric, t, values).is_some_and(|shares| shares.iter().any(|(row, _)| row + 1 == t.len()));
+    by_value || end_slope(metric, t, values) != 0.0
+}
+
+/// The step of the difference, in units of the last interval; weights of the fourth order.
+const END_STEP: f64 = 0.01;
+const WEIGHTS: [(f64, f64); 4] = [(-2.0, 1.0 / 12.0), (-1.0, -2.0 / 3.0), (1.0, 2.0 / 3.0), (2.0, -1.0 / 12.0)];
+
+/// ∂m/∂t of the last row, whose values stay: by differences of the number itself, in which the time stands as in a rational function.
+fn end_slope(metric: &Metric, t: &[f64], values: &[f64]) -> f64 {
+    let Some([before, last]) = t.last_chunk::<2>() else { return 0.0 };
+    let step = END_STEP * (last - before);
+    let mut moved = t.to_vec();
+    let mut at = |by: f64| {
+        moved[t.len() - 1] = last + by * step;
+        value(metric, &moved, values)
+    };
+    let slope = WEIGHTS.iter().map(|(by, weight)| weight * at(*by)).sum::<f64>() / step;
+    if step > 0.0 { slope } else { 0.0 }
 }
 
 /// How much the value of each row counts in a metric: row and ∂m/∂y, a row that is there twice with the sum; `None` where the metric has no value.
@@ -132,7 +178,7 @@ mod tests {
                 (Some(Band::Width(0.12)), Some(1.0)),
             ] {
                 let metric = metric(kind, band, target);
-                let found = gradient(&metric, &t, &y, &[&change])[0];
+                let found = gradient(&metric, (&t, &y), &[&change], None)[0];
                 let at = |step: f64| {
                     let moved: Vec<f64> = y.iter().zip(&change).map(|(y, change)| y + step * change).collect();
                     value(&metric, &t, &moved)
@@ -150,6 +196,39 @@ mod tests {
         }
     }
 
+    /// y(t; p) = sin(3t + p) until t* = 2 + p/2: all rows but the last stay where they are.
+    #[test]
+    fn gradients_know_that_the_end_moves() {
+        for kind in KINDS {
+            let of = |p: f64| {
+                let end = 2.0 + 0.5 * p;
+                let t: Vec<f64> = (0..40).map(|k| 0.05 * f64::from(k)).chain([end]).collect();
+                let y: Vec<f64> = t.iter().map(|t| (3.0 * t + p).sin() + 1.5).collect();
+                (t, y)
+            };
+            let (t, y) = of(0.0);
+            let change: Vec<f64> = t.iter().map(|t| (3.0 * t).cos()).collect();
+            let end = End { along: &[(3.0 * 2.0f64).cos() * 2.5], later: &[0.5] };
+            let metric = Metric { window: None, ..metric(kind, Some(Band::Share(0.1)), Some(1.5)) };
+            let found = gradient(&metric, (&t, &y), &[&change], Some(end))[0];
+            let at = |p: f64| {
+                let (t, y) = of(p);
+                value(&metric, &t, &y)
+            };
+            if at(0.0).is_nan() {
+                continue;
+            }
+            let step = 1e-5;
+            let truth = (8.0 * (at(step) - at(-step)) - (at(2.0 * step) - at(-2.0 * step))) / (12.0 * step);
+            assert!((found - truth).abs() < 1e-7 * (1.0 + truth.abs()), "{kind:?}: {found} for {truth}");
+        }
+        let time = Metric { of: "t".to_owned(), window: None, ..metric(MetricKind::Final, None, None) };
+        let t = [0.0, 1.0, 1.7];
+        let end = End { along: &[0.0], later: &[0.5] };
+        assert_eq!(gradient(&time, (&t, &t), &[&[0.0; 3]], Some(end)), [0.5]);
+        assert!(rests_on_end(&time, &t, &t));
+    }
+
     #[test]
     fn gradients_are_empty_where_there_is_none() {
         let (t, y) = swing(0.0);
@@ -158,15 +237,15 @@ mod tests {
         let largest =
             (0..t.len()).filter(|k| t[*k] > 0.05 && y[*k].is_finite()).max_by(|a, b| y[*a].total_cmp(&y[*b])).unwrap();
         change[largest] = f64::NAN;
-        let of = |kind| gradient(&metric(kind, None, None), &t, &y, &[&change])[0];
+        let of = |kind| gradient(&metric(kind, None, None), (&t, &y), &[&change], None)[0];
         assert!(of(MetricKind::Max).is_nan() && of(MetricKind::Mean).is_nan());
         assert_eq!((of(MetricKind::Min), of(MetricKind::Final)), (1.0, 1.0));
         // What has no value has no gradient, and the rms of zeros bends.
         let still = vec![0.0; t.len()];
         let ones = vec![1.0; t.len()];
         for kind in [MetricKind::Frequency, MetricKind::LogDecrement, MetricKind::Rms] {
-            assert!(gradient(&metric(kind, None, None), &t, &still, &[&ones])[0].is_nan(), "{kind:?}");
+            assert!(gradient(&metric(kind, None, None), (&t, &still), &[&ones], None)[0].is_nan(), "{kind:?}");
         }
-        assert_eq!(gradient(&metric(MetricKind::Rms, None, None), &t, &still, &[&still]), [0.0]);
+        assert_eq!(gradient(&metric(MetricKind::Rms, None, None), (&t, &still), &[&still], None), [0.0]);
     }
 }

@@ -1,7 +1,7 @@
 //! What is worked out of the derivatives of a case at its end: gradients of its metrics, and what matters most.
 
 use super::layout::{Layout, Ranked};
-use crate::metrics::gradient;
+use crate::metrics::{End, gradient};
 use crate::table::{Statistics, push_fields, push_number, push_text};
 use serde::{Deserialize, Serialize};
 use springpot::observe::Quantity;
@@ -98,6 +98,8 @@ pub(super) struct Measured<'a> {
     pub(super) t: &'a [f64],
     /// Of each metric.
     pub(super) columns: Vec<OfMetric<'a>>,
+    /// Where an event ended the case: of each metric the derivatives of its column along the event, and those of its time.
+    pub(super) ended: Option<(Vec<Option<Vec<f64>>>, &'a [f64])>,
     /// What going back through the run found of each metric, where it did.
     pub(super) gradients: Option<Vec<Option<Vec<f64>>>>,
 }
@@ -120,7 +122,11 @@ impl CaseDerivatives {
             let back = measured.gradients.as_ref().and_then(|gradients| gradients[k].clone());
             let slopes = match changes {
                 _ if back.is_some() => back.unwrap_or_default(),
-                Some(changes) => gradient(&plan.metric, measured.t, own, changes),
+                Some(changes) => {
+                    let ended = measured.ended.as_ref();
+                    let end = ended.and_then(|(of, later)| of[k].as_deref().map(|along| End { along, later }));
+                    gradient(&plan.metric, (measured.t, own), changes, end)
+                }
                 None => vec![f64::NAN; differentiated.count],
             };
             let unit = plan.metric.kind.unit(&wanted.column.unit);

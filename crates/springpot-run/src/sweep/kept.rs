@@ -68,6 +68,14 @@ impl<'a> Kept<'a> {
         &self.values
     }
 
+    /// Takes the row of an event that ends the case, and the derivatives of its time.
+    pub(super) fn ended(&mut self, row: &[f64], later: &[f64]) {
+        self.values.clear();
+        self.values.extend(self.columns.iter().map(|&k| row[k]));
+        let values = &self.values;
+        self.watched.iter_mut().for_each(|watched| watched.ended(values, later));
+    }
+
     /// Takes the values of a row again.
     pub(super) fn again(&mut self, values: &[f64]) {
         self.values.clear();

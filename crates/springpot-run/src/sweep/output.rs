@@ -131,6 +131,10 @@ impl Sink for Output<'_> {
         self.taken.event(system, event, row);
     }
 
+    fn ended(&mut self, row: &[f64], later: &[f64]) {
+        self.taken.ended(row, later);
+    }
+
     fn is_due(&self, t: f64, last: bool) -> bool {
         self.files.as_ref().is_some_and(|files| last || files.is_due(t))
     }

@@ -267,6 +267,10 @@ impl Sink for Memory<'_> {
         self.taken.event(system, event, row);
     }
 
+    fn ended(&mut self, row: &[f64], later: &[f64]) {
+        self.taken.ended(row, later);
+    }
+
     fn is_due(&self, _t: f64, _last: bool) -> bool {
         false
     }

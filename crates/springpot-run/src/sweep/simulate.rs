@@ -6,7 +6,7 @@ use super::metrics::CaseMetrics;
 use crate::trouble::Trouble;
 use springpot::driver::{self, Checkpoint, LimitWatch, PassedLimit, Report, Rows, Tape, Watch};
 use springpot::sensitivity::Lost;
-use springpot::system::{RunError, Stop, System};
+use springpot::system::{Action, RunError, Stop, System};
 use springpot_scenario::{Cases, Plan};
 use std::io;
 use std::sync::atomic::Ordering;
@@ -17,6 +17,9 @@ pub(super) trait Sink {
 
     /// Takes the row of an event.
     fn event(&mut self, system: &System, event: usize, row: &[f64]);
+
+    /// Takes the row of an event that ends the case, whose derivatives are along the event, and those of its time; none where the run has no tangents.
+    fn ended(&mut self, row: &[f64], later: &[f64]);
 
     /// Whether a checkpoint is wanted at t, which is the last one or not.
     fn is_due(&self, t: f64, last: bool) -> bool;
@@ -115,6 +118,7 @@ pub(super) fn simulate(
         None => sink.metrics(&plan, None).unwrap_or_default(),
     };
     let no_ledger = why_no_ledger(&system, &report);
+    lost.append(&mut metrics.derivatives.lost);
     metrics.derivatives.lost = lost;
     Ok(Ran { report, error, interrupted, no_ledger, limits, metrics })
 }
@@ -166,6 +170,9 @@ impl Rows for CaseRows<'_> {
     fn event(&mut self, event: usize, row: &[f64], later: &[f64]) -> io::Result<()> {
         let is_spread = self.spread(row);
         let row = if is_spread { &self.row } else { row };
+        if self.system.events[event].action == Action::Stop {
+            self.sink.ended(row, later);
+        }
         if later.is_empty() {
             self.sink.event(self.system, event, row);
             return Ok(());

@@ -51,6 +51,11 @@ impl<'a> Taken<'a> {
         self.events.take(system, &self.lead, event, row);
     }
 
+    /// Takes the row of an event that ends the case, and the derivatives of its time.
+    pub(super) fn ended(&mut self, row: &[f64], later: &[f64]) {
+        self.kept.iter_mut().for_each(|kept| kept.ended(row, later));
+    }
+
     /// What the metrics are of the rows so far, and what matters most.
     pub(super) fn metrics(&self, plan: &Plan, back: Option<Back>) -> Result<CaseMetrics, RunError> {
         let kept = self.kept.as_ref();

@@ -3,13 +3,13 @@
 use super::support::forward::{distance, slider, state};
 use super::support::run;
 
-/// −d ln(error)/d ln(steps) from loose to tight tolerances, by least squares.
+/// By `"radau"`, −d ln(error)/d ln(steps) from loose to tight tolerances, by least squares.
 fn order(rest: &str) -> f64 {
     let law = "law = \"spring\"\nparameters = { k = 30 }";
     let text = slider("2", 0.0, law, &state("0", "0"));
     let solved = |rtol: f64| {
         let run = run(&format!(
-            "{text}{rest}\n[time]\nend = 2\noutput_times = [1, 2]\n[solver]\nrtol = {rtol:e}\nmax_step = 2\n"
+            "{text}{rest}\n[time]\nend = 2\noutput_times = [1, 2]\n[solver]\nmethod = \"radau\"\nrtol = {rtol:e}\nmax_step = 2\n"
         ));
         ([run.column("q.q"), run.column("v.q")].concat(), run.report.steps)
     };

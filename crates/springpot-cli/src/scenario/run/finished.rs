@@ -34,7 +34,7 @@ impl Said {
             diagnostic::warning(format!("{more} passed; run.json says which"), None);
         }
         self.warn_of_lost(ran);
-        // Runs that choose their steps have failed by then.
+        // Runs that choose their steps fail where they are off by more than they warn of.
         let unbalanced = || outcome.cases.iter().filter(|case| case.error.is_none() && !case.report.is_balanced());
         if let Some(case) = unbalanced().next() {
             let (residual, of) =
@@ -42,7 +42,9 @@ impl Said {
             let (residual, of) = (rough(residual), rough(of));
             let message = format!("the energy balance is off by {residual} J of {of} J turned over");
             let message = in_cases(cases, ran, case.index, unbalanced().count(), &message);
-            diagnostic::warning(message, Some("take a shorter solver.step".to_owned()));
+            let has_steps_of_one_size = cases.plan(case.index).is_ok_and(|plan| plan.settings.fixed_step.is_some());
+            let help = if has_steps_of_one_size { "take a shorter solver.step" } else { "take a smaller solver.rtol" };
+            diagnostic::warning(message, Some(help.to_owned()));
         }
     }
 

@@ -39,6 +39,9 @@ const STENCILS: [(&[f64], &[f64]); 3] = [
 /// A second difference that is more than this share of the first one bends there: a row at which something switches, which moves.
 const BENDS: f64 = 0.05;
 
+/// The column of t. The row of an event that ends the run stands at another time in every run: it is not compared.
+const TIME: usize = 0;
+
 /// What was found of one parameter.
 #[derive(Debug, Clone)]
 pub(super) struct Compared {
@@ -119,7 +122,8 @@ struct Noise {
 /// Column by column, of a run that has the rows `told`, beside one that is as exact as differences need it, and a still finer one.
 fn noise(columns: &[Column], [told, tight, finer]: [&[Vec<f64>]; 3]) -> Vec<Noise> {
     let off = |k: usize, rows: &[Vec<f64>], others: &[Vec<f64>]| {
-        rows.iter().zip(others).map(|(one, other)| (one[k] - other[k]).abs()).fold(0.0, f64::max)
+        let pairs = rows.iter().zip(others).filter(|(one, other)| one[TIME] == other[TIME]);
+        pairs.map(|(one, other)| (one[k] - other[k]).abs()).fold(0.0, f64::max)
     };
     let count = tight.first().map_or(0, Vec::len);
     let sizes: Vec<f64> = (0..count).map(|k| tight.iter().map(|row| row[k].abs()).fold(0.0, f64::max)).collect();
@@ -176,7 +180,11 @@ fn one(
         let Some(column) = names.iter().position(|own| own == of) else { continue };
         let (mut off, mut largest) = (0.0f64, 0.0f64);
         for (row, own) in told.iter().enumerate() {
-            let there: Vec<f64> = runs.iter().map(|rows| rows.get(row).map_or(f64::NAN, |row| row[column])).collect();
+            let at_once = |rows: &Vec<Vec<f64>>| {
+                let row = rows.get(row).filter(|row| row[TIME] == own[TIME]);
+                row.map_or(f64::NAN, |row| row[column])
+            };
+            let there: Vec<f64> = runs.iter().map(at_once).collect();
             let difference = there.iter().zip(weights).map(|(y, weight)| weight * y).sum::<f64>() / step;
             let middle = exact.get(row).map_or(f64::NAN, |row| row[column]);
             if own[k].is_finite() && difference.is_finite() && !bends(at, &there, (middle, noise[column])) {

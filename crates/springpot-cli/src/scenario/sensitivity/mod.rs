@@ -63,13 +63,26 @@ pub(crate) fn sensitivity(options: &SensitivityOptions, catalog: &Catalog, disk:
     run_new(new, (jobs, options.json), (catalog, disk), then)
 }
 
+/// How derivatives are found.
+const METHOD: &str = "sensitivity.method";
+
 /// The scenario with its derivatives.
 fn asked(options: &SensitivityOptions, catalog: &Catalog) -> Result<Asked, Refusals> {
     let mut asked = Asked { sweeps: options.sweeps.clone(), ..Asked::read(&options.file)? };
     asked.overrides.clone_from(&options.overrides);
+    let is_set =
+        |path: &str| options.overrides.iter().any(|own| own.split('=').next().is_some_and(|own| own.trim() == path));
+    if !is_set(METHOD)
+        && let Ok(planned) = Planned::of(&asked.scenario()?, catalog, &Stop::new(true), &mut |_| {})
+        && planned.plan.sensitivity.is_some_and(|sensitivity| sensitivity.adjoint.is_some())
+    {
+        let message =
+            "going back, as the file's method = \"adjoint\" says, has no columns to rank: this run goes forward";
+        diagnostic::warning(message, Some("`springpot run` goes back".to_owned()));
+    }
     let mut set = |key: &str, value: String| {
         let path = format!("sensitivity.{key}");
-        if !options.overrides.iter().any(|own| own.split('=').next().is_some_and(|own| own.trim() == path)) {
+        if !is_set(&path) {
             asked.overrides.push(format!("{path}={value}"));
         }
     };
