@@ -11,6 +11,8 @@ use crate::chart::{Axis, Panel};
 use crate::draw::{wrap, wrap_evenly};
 use crate::{PIXELS_PER_MM, ReportError};
 
+/// So far, both ends together, labels may reach beyond the data area, px: pages have no more room there.
+const OVERHANG: f64 = 40.0;
 /// Row above a panel for the power of ten of its y axis.
 const FACTOR_ROW: f64 = 17.0;
 const ROW_GAP: f64 = 14.0;
@@ -83,9 +85,9 @@ impl Layout<'_> {
         let y_ticks = |range: &Option<Range>| range.map_or_else(Ticks::none, |range| axes::y_ticks(range, height));
         let title = |panel: &Panel| panel.title.as_ref().map(|t| wrap(font, t, PANEL_TITLE_SIZE, width, 2));
         let label = |axis: &Axis, room: f64| {
-            // A long word may reach beyond the data area; it is not split.
+            // A long word may reach somewhat beyond the data area, where it is not split.
             let words = axis.label.split(' ').map(|word| font.width(word, LABEL_SIZE));
-            let room = words.fold(room, f64::max).min(1.5 * room);
+            let room = words.fold(room, f64::max).min(room + OVERHANG);
             if axis.label.is_empty() { Vec::new() } else { wrap_evenly(font, &axis.label, LABEL_SIZE, room, 3) }
         };
         let has_data = ranges.y.iter().any(Option::is_some) || ranges.right.is_some();
