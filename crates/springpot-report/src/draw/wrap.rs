@@ -74,11 +74,14 @@ fn words(text: &str, fits: impl Fn(&str) -> bool) -> Vec<String> {
     words
 }
 
-/// Length in bytes of the longest beginning that fits; at least one character.
+/// Length in bytes of the longest beginning that fits, behind a mark between parts of a name where there is one in its second half; at least one
+/// character.
 fn head(word: &str, fits: impl Fn(&str) -> bool) -> usize {
     let ends = word.char_indices().map(|(start, c)| start + c.len_utf8());
     let first = word.chars().next().map_or(0, char::len_utf8);
-    ends.take_while(|end| fits(&word[..*end])).last().unwrap_or(first)
+    let longest = ends.take_while(|end| fits(&word[..*end])).last().unwrap_or(first);
+    let behind_mark = word[..longest].rfind(['_', '-', '.']).map(|mark| mark + 1);
+    behind_mark.filter(|cut| 2 * cut >= longest).unwrap_or(longest)
 }
 
 /// Ends the last line in "…", shortened until it fits.
@@ -130,6 +133,8 @@ mod tests {
         let lines = wrap(&font, &word, 10.0, 100.0, 2);
         assert_eq!(lines.len(), 2);
         assert!(lines[1].ends_with('…') && font.width(&lines[1], 10.0) <= 100.0);
+        let lines = wrap(&font, "strut_between_world_and_forearm", 10.0, font.width("strut_between_world_an", 10.0), 3);
+        assert_eq!(lines, ["strut_between_world_", "and_forearm"]);
         assert_eq!(wrap(&font, "", 10.0, 100.0, 2), [""]);
         assert_eq!(wrap(&font, "a\nb\tc", 10.0, 100.0, 2), ["a b c"]);
         assert_eq!(wrap(&font, "ab", 10.0, 0.0, 3), ["a", "b"]);

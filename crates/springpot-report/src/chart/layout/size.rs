@@ -12,7 +12,7 @@ use crate::draw::{wrap, wrap_evenly};
 use crate::{PIXELS_PER_MM, ReportError};
 
 /// So far, both ends together, labels may reach beyond the data area, px: pages have no more room there.
-const OVERHANG: f64 = 40.0;
+const OVERHANG: f64 = 16.0;
 /// Row above a panel for the power of ten of its y axis.
 const FACTOR_ROW: f64 = 17.0;
 const ROW_GAP: f64 = 14.0;
