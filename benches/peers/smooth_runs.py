@@ -1,12 +1,12 @@
 """Forward runs without memory: time at equal error, by all ways that springpot has to choose steps, and by MuJoCo, exudyn and SciPy on Pinocchio.
 
 python benches/peers/smooth_runs.py [COMMAND] [TIMES]: COMMAND is springpot (default: target/release/springpot). Every method goes once through its
-grid, tolerances a quarter of a decade apart or numbers of steps by a tenth of a decade, until its error is 1e-9 or a run takes over 0.5 s; these
+grid, tolerances a quarter of a decade apart or numbers of steps by a tenth of a decade, until its error is 1e-9 or a run takes over 1.5 s; these
 runs are printed. Then, for every error asked for, each method's first setting of the grid that is at or below the error is run TIMES times
 (default 7) in turn with the others'. The table has the medians, of a rival that of its fastest method, and their ratios to the first column's;
 nothing is interpolated, and a dash is an error that the grid does not reach.
 Error: the largest of q at the end, against SciPy's DOP853 at rtol 1e-13; where that is not installed, and for the stiff governor, against springpot.
-Times leave out imports, reading and building. Of springpot it is the command's CPU time less that of a run to t = 1 µs just before, and where that is
+Times leave out imports, reading and building. Of springpot it is the command's CPU time less that of a run of one step just before, and where that is
 under 5 ms the difference of the case's own wall times; of the others the CPU time of the process.
 Rivals that are not installed are left out (smooth_peers.py; needs NumPy). SciPy's steps and the forces of its elements are Python.
 """
@@ -91,7 +91,9 @@ STIFF = {"flyball governor, 10 s"}
 OURS = {"left out": None, "explicit": "explicit", "radau": "radau"}
 ERRORS = [1e-3, 1e-6, 1e-9]
 SHORT = 5e-3  # s
-LONGEST = 0.5  # s, the last run of a grid
+# Steps are at most a fiftieth of the run where nothing else is said: a short run would have fifty.
+ONE_STEP = [word for key in ("time.end=1e-6", "time.output_times=[1e-6]", "solver.max_step=1", "solver.first_step=1e-6") for word in ("--set", key)]
+LONGEST = 1.5  # s, the last run of a grid
 TOLERANCES = [10 ** (-k / 4) for k in range(8, 53)]
 STEPS = [round(10 ** (k / 10)) for k in range(15, 65)]
 
@@ -110,13 +112,14 @@ def spent(command, file, options):
 def run(command, file, rtol, method):
     """(seconds, q at the end, what the run counted), or None where the method does not take the case."""
     options = ["--set", f"solver.rtol={rtol}"] + (["--set", f'solver.method="{method}"'] if method else [])
-    begin = spent(command, file, [*options, "--set", "time.end=1e-6", "--set", "time.output_times=[1e-6]"])
+    begin = spent(command, file, [*options, *ONE_STEP])
     whole = spent(command, file, options)
     if begin is None or whole is None:
         return None
     (cpu_begin, case_begin), (cpu, case) = begin, whole
     # CPU times of commands are uncertain by a millisecond, wall times of what takes long by what else the machine does.
-    seconds = cpu - cpu_begin if cpu - cpu_begin > SHORT else case["wall_time"] - case_begin["wall_time"]
+    wall = case["wall_time"] - case_begin["wall_time"]
+    seconds = wall if wall < SHORT else cpu - cpu_begin
     row = list(csv.DictReader((file.parent / "out/results.csv").open()))[-1]
     counts = f"steps {case['steps']} + {case['rejected_steps']} evaluations {case.get('evaluations') or 0} Newton {case['newton_iterations']}"
     return seconds, [float(value) for name, value in row.items() if name.startswith("q.")], counts

@@ -39,6 +39,38 @@ fn a_joint_that_sticks_alone_keeps_its_derivatives() {
     compare_within(1e-6, &text, &["q.q1", "v.q1", "strut.force"], &paths);
 }
 
+/// What friction takes bends where a joint comes to rest, and goes on with the other sign where it turns round.
+#[test]
+fn losses_bend_where_a_joint_comes_to_rest() {
+    let rests = r#"robot.gravity = [0, 0, 0]
+[[robot.body]]
+name = "a"
+joint = { name = "x", kind = "prismatic", axis = [1, 0, 0], friction = { force = 3, stick = true }, damping = 0.7 }
+mass = 2
+[motion]
+kind = "forward"
+start = { v = { x = 1.5 } }
+torque = { x = "0.5 - 0.2*q.x - 0.3*v.x" }
+[time]
+end = 1.5
+output_step = 0.1
+"#;
+    let turns = rests.replace("torque = { x = \"0.5 - 0.2*q.x - 0.3*v.x\" }", "torque = { x = \"-60*q.x\" }");
+    let joint = |key: &str| format!("robot.body.a.joint.{key}");
+    for text in [rests, &turns] {
+        for rtol in ["1e-7", "1e-9", "1e-10"] {
+            let text = format!("{text}[solver]\nrtol = {rtol}\n");
+            let paths = [
+                ("motion.start.v.x", 1e-3),
+                ("robot.body.a.mass", 1e-3),
+                (&*joint("friction.force"), 1e-3),
+                (&*joint("damping"), 1e-3),
+            ];
+            compare_within(1e-6, &text, &["energy.actuators", "energy.joints", "q.x"], &paths);
+        }
+    }
+}
+
 /// An event that sets a torque to what it is moves nothing, and what moves later is not moved by it.
 #[test]
 fn events_that_set_what_is_set_leave_nothing_behind() {

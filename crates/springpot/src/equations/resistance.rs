@@ -76,9 +76,22 @@ pub(crate) fn joint_loss(system: &System, v: &[f64]) -> f64 {
 }
 
 /// Hands over what the power that damping and friction take changes by with each velocity: its index and the slope, W/(m/s) or W/(rad/s).
-pub(super) fn each_loss_slope(system: &System, v: &[f64], mut take: impl FnMut(usize, f64)) {
+///
+/// That of friction that sticks is f·|v|, with a bend at rest: its slope is that of the side on which the velocity moves, `sliding` (−1, 0 where friction
+/// holds, or 1), whatever rounding has made of a velocity that comes to rest.
+pub(super) fn each_loss_slope(
+    system: &System,
+    v: &[f64],
+    sliding: impl Fn(usize) -> f64,
+    mut take: impl FnMut(usize, f64),
+) {
     for joint in resisting(&system.model, v) {
-        take(joint.index, joint.ratio * (joint.resistance() + joint.speed * joint.slope()));
+        let Resisting { index, ratio, speed, damping, friction, law } = joint;
+        let resistance = match law {
+            FrictionLaw::Smooth { .. } => joint.resistance(),
+            FrictionLaw::Sticking => damping * speed + friction * sign(ratio) * sliding(index),
+        };
+        take(index, ratio * (resistance + speed * joint.slope()));
     }
 }
 

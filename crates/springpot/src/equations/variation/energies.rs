@@ -214,7 +214,7 @@ impl Variation {
             equations.bank.vary_powers(e, &told, &element.law, &mut PowersVariation { dissipation, input });
             elements.push(own);
         }
-        joints.chunks_exact_mut(count).enumerate().for_each(|(i, flow)| self.flow_of_joints(i, flow));
+        joints.chunks_exact_mut(count).enumerate().for_each(|(i, flow)| self.flow_of_joints(equations, i, flow));
         self.works.flows = Some(Flows::AtNodes { elements, joints });
     }
 
@@ -247,9 +247,11 @@ impl Variation {
     }
 
     /// Adds what changes of what joints lose at node `i`.
-    fn flow_of_joints(&self, i: usize, flow: &mut [f64]) {
+    fn flow_of_joints(&self, equations: &Equations, i: usize, flow: &mut [f64]) {
         let (count, model, node) = (self.count(), &self.system.model, &self.nodes[i]);
-        each_loss_slope(&self.system, &node.v_now, |k, slope| {
+        let own = |k: usize| self.own_v.iter().position(|own| *own == k);
+        let sliding = |k: usize| own(k).map_or(0.0, |own| equations.sliding(own, node.v_now[k]));
+        each_loss_slope(&self.system, &node.v_now, sliding, |k, slope| {
             let changes = node.v[k * count..].iter();
             flow.iter_mut().zip(changes).for_each(|(flow, change)| *flow += slope * change);
         });
@@ -290,7 +292,7 @@ impl Variation {
             let sums: [&mut [f64]; 2] = own.split_at_mut(count).into();
             equations.bank.vary_powers_at(e, &at(e), &element.told(count, i, None), &element.law, sums);
         }
-        self.flow_of_joints(i, joints);
+        self.flow_of_joints(equations, i, joints);
     }
 
     /// Begins a step that integrates its flows itself, at whose start every element dissipates and is supplied with `first`, W.
