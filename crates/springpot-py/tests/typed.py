@@ -75,7 +75,7 @@ def robots() -> None:
     jacobian: Array = model.frame_jacobian("arm", q) + model.frame_jacobian_rate("arm", q, [1.0])
     start, end = ("world", [0, 0, -0.3]), ("arm", (0.3, 0, 0))
     length, gradient = model.pair_length(start, end, q)
-    along: Array = sp.element_regressor(model, start, end, [0.0, 0.1, 0.2], q, rest_length=0.4, orders=[0.0, 0.5])
+    along: Array = sp.element_regressor(model, start, end, [0.0, 0.1, 0.2], v, rest_length=0.4, orders=[0.0, 0.5])
     print(frames, counts, facts, limits, mass, tau, a, square, force, points, energy, rotation, place, jacobian, length, gradient)
     print(slopes, momenta, along)
 
