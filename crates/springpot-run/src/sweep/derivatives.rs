@@ -99,10 +99,13 @@ pub(super) struct Measured<'a> {
     /// Of each metric.
     pub(super) columns: Vec<OfMetric<'a>>,
     /// Where an event ended the case: of each metric the derivatives of its column along the event, and those of its time.
-    pub(super) ended: Option<(Vec<Option<Vec<f64>>>, &'a [f64])>,
+    pub(super) ended: Option<Ended<'a>>,
     /// What going back through the run found of each metric, where it did.
     pub(super) gradients: Option<Vec<Option<Vec<f64>>>>,
 }
+
+/// Of each metric the derivatives of its column where they are known, and those of the time.
+pub(super) type Ended<'a> = (Vec<Option<Vec<f64>>>, &'a [f64]);
 
 /// The column of a metric, and its derivatives where they are known.
 pub(super) type OfMetric<'a> = (&'a [f64], Option<Vec<&'a [f64]>>);

@@ -49,13 +49,15 @@ joint = { name = "x", kind = "prismatic", axis = [1, 0, 0], friction = { force =
 mass = 2
 [motion]
 kind = "forward"
-start = { v = { x = 1.5 } }
+start = { v = { x = 0.4 } }
 torque = { x = "0.5 - 0.2*q.x - 0.3*v.x" }
 [time]
 end = 1.5
 output_step = 0.1
 "#;
-    let turns = rests.replace("torque = { x = \"0.5 - 0.2*q.x - 0.3*v.x\" }", "torque = { x = \"-60*q.x\" }");
+    let turns = rests
+        .replace("torque = { x = \"0.5 - 0.2*q.x - 0.3*v.x\" }", "torque = { x = \"-60*q.x\" }")
+        .replace("x = 0.4 }", "x = 1.5 }");
     let joint = |key: &str| format!("robot.body.a.joint.{key}");
     for text in [rests, &turns] {
         for rtol in ["1e-7", "1e-9", "1e-10"] {
