@@ -60,7 +60,7 @@ output_step = 0.1
         .replace("x = 0.4 }", "x = 1.5 }");
     let joint = |key: &str| format!("robot.body.a.joint.{key}");
     for text in [rests, &turns] {
-        for rtol in ["1e-7", "1e-9", "1e-10"] {
+        for rtol in ["1e-7", "1e-9", "1e-10", "1e-12"] {
             let text = format!("{text}[solver]\nrtol = {rtol}\n");
             let paths = [
                 ("motion.start.v.x", 1e-3),

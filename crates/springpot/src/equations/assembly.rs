@@ -137,6 +137,7 @@ impl Equations {
     /// Takes over which velocities friction holds.
     pub(super) fn take_free(&mut self) {
         self.free = self.friction.free();
+        self.rounding.shares.forget();
     }
 
     /// Whether a start is singular, so that its share of the accelerations is kept apart.

@@ -25,6 +25,10 @@ const SHORT: f64 = 1e-10;
 /// Share of rtol that a change may be off, in units of the largest velocity of the step or of the limit.
 const SHARE: f64 = 1e-3;
 
+/// Where in a step a value shows which way it goes at the end, and so many bits of the time of its zero are not known.
+const BEFORE: f64 = 0.999;
+const LAST_BITS: f64 = 4.0 * f64::EPSILON;
+
 /// A prescribed velocity below this share of its largest is at rest.
 const AT_REST: f64 = 1e-9;
 
@@ -134,9 +138,9 @@ impl Equations {
         let rubbing: Vec<(usize, i8)> = self.friction.rubbing().collect();
         for &(k, direction) in rubbing.iter().filter(|(_, direction)| *direction != 0) {
             let change = Change::Stop { k, direction: f64::from(direction) };
-            let [at_end, before] = [1.0, 0.999].map(|theta| self.value(cx, step, change, theta));
+            let [before, at_end] = [BEFORE, 1.0].map(|theta| self.value(cx, step, change, theta));
             let largest = step.evaluations.iter().fold(0.0, |largest: f64, node| largest.max(node.v[k].abs()));
-            if at_end.abs() <= SHARE * step.rtol * largest && at_end < before {
+            if is_at_end(step, [before, at_end], SHARE * step.rtol * largest) {
                 self.friction.stopping.push(k);
             } else if let Some(theta) = self.first_stop(cx, step, k, change) {
                 note(theta, change);
@@ -159,8 +163,8 @@ impl Equations {
                 }
                 for direction in [1.0, -1.0] {
                     let change = Change::BreakAway { k, direction };
-                    let at_end = holding.margin(direction, 1.0);
-                    if at_end.abs() <= 0.5 * holding.tolerance && holding.margin(direction, 0.999) > at_end {
+                    let margins = [BEFORE, 1.0].map(|theta| holding.margin(direction, theta));
+                    if is_at_end(step, margins, 0.5 * holding.tolerance) {
                         self.friction.breaks_away = true;
                     } else if let Some(theta) = first_zero(|theta| holding.margin(direction, theta)) {
                         note(theta, change);
@@ -420,6 +424,13 @@ impl Equations {
         }
         first
     }
+}
+
+/// Whether what was positive ends the step at zero, by its value there or by the time of it, whose last bits tell no more: of values at [`BEFORE`]
+/// and at the end.
+fn is_at_end(step: &Solved, [before, at_end]: [f64; 2], tolerance: f64) -> bool {
+    let a_bit = LAST_BITS * step.to / ((1.0 - BEFORE) * step.size) * (before - at_end);
+    at_end < before && at_end.abs() <= tolerance.max(a_bit)
 }
 
 impl Holding {

@@ -3,6 +3,8 @@
 use super::assembly::{Equations, Tangent};
 use super::context::Context;
 use super::node::Node;
+use crate::linalg::columns::{Block, LANES};
+use serde::{Deserialize, Serialize};
 
 /// What a sum of forces loses of its largest terms.
 const LOST: f64 = 4.0 * f64::EPSILON;
@@ -17,6 +19,32 @@ const HELD: f64 = 16.0;
 /// Above this multiple of the rounding that a velocity has by itself, what others bring in is not looked at.
 const CLOSE: f64 = 1e6;
 
+/// More free velocities than these take over from step to step what M⁻¹ does to their rounding, and so many steps: its size is what counts.
+const FEW: usize = 16;
+const STEPS: u32 = 16;
+
+/// What a step takes over from those before.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub(super) struct Shares {
+    /// Of each free velocity, what all forces make up in units of what its own does; NaN where not known.
+    of: Vec<f64>,
+    /// Steps since they began.
+    steps: u32,
+}
+
+impl Shares {
+    pub(super) fn forget(&mut self) {
+        *self = Self::default();
+    }
+
+    pub(super) fn commit(&mut self) {
+        self.steps += 1;
+        if self.steps == STEPS {
+            self.forget();
+        }
+    }
+}
+
 /// Forces that rounding makes up, and accelerations that follow.
 #[derive(Debug, Default)]
 pub(super) struct Rounding {
@@ -26,10 +54,11 @@ pub(super) struct Rounding {
     pulls: Vec<f64>,
     /// Of each free velocity, N or N·m.
     forces: Vec<f64>,
-    /// Rows of |M⁻¹| over the free velocities; empty where not asked for since the last linearisation.
-    inverse: Vec<Vec<f64>>,
+    /// Columns of M⁻¹ over the free velocities, [`LANES`] side by side; empty where not asked for since the last linearisation.
+    inverse: Vec<Vec<Block>>,
     /// Whether M was regular, where it was factored since then.
     is_factored: Option<bool>,
+    pub(super) shares: Shares,
     /// Of each free velocity, m/s² or rad/s².
     pub(super) accelerations: Vec<f64>,
 }
@@ -57,11 +86,18 @@ impl Equations {
         let own = self.free().iter().zip(&rounding.forces).map(|(&k, f)| if mass(k) > 0.0 { f / mass(k) } else { 0.0 });
         rounding.accelerations.clear();
         rounding.accelerations.extend(own);
+        rounding.shares.of.resize(count, f64::NAN);
         for r in 0..count {
             let (force, own) = (rounding.forces[r], rounding.accelerations[r]);
-            if (allowed(r) <= CLOSE * h * own || (force > 0.0 && own == 0.0)) && self.invert_row(n, &mut rounding, r) {
-                let row = rounding.inverse[r].iter().zip(&rounding.forces);
-                rounding.accelerations[r] = row.map(|(m, f)| m * f).sum();
+            let is_close = allowed(r) <= CLOSE * h * own || (force > 0.0 && own == 0.0);
+            let share = rounding.shares.of[r];
+            if is_close && count > FEW && share.is_finite() {
+                rounding.accelerations[r] = share * own;
+            } else if is_close && self.invert(n, &mut rounding, r / LANES) {
+                // M is symmetric: its columns are rows.
+                let row = rounding.inverse[r / LANES].iter().zip(&rounding.forces);
+                rounding.accelerations[r] = row.map(|(m, f)| m[r % LANES].abs() * f).sum();
+                rounding.shares.of[r] = rounding.accelerations[r] / own;
             }
         }
         self.rounding = rounding;
@@ -125,23 +161,21 @@ impl Equations {
         }
     }
 
-    /// Row `r` of |M⁻¹| over the free velocities; `false` where M is singular.
-    fn invert_row(&mut self, nv: usize, rounding: &mut Rounding, r: usize) -> bool {
+    /// A block of columns of M⁻¹ over the free velocities; `false` where M is singular.
+    fn invert(&mut self, nv: usize, rounding: &mut Rounding, block: usize) -> bool {
         let Rounding { inverse, is_factored, .. } = rounding;
         let (free, Tangent { mass, slopes, .. }) = (&self.free, &mut self.tangent);
         if !*is_factored.get_or_insert_with(|| mass.factor_part(&slopes.d_a, nv, free)) {
             return false;
         }
         let count = free.len();
-        inverse.resize_with(count.max(inverse.len()), Vec::new);
-        let row = &mut inverse[r];
-        if row.len() != count {
-            // M is symmetric: its columns are rows.
-            row.clear();
-            row.resize(count, 0.0);
-            row[r] = 1.0;
-            mass.solve(row);
-            row.iter_mut().for_each(|entry| *entry = entry.abs());
+        inverse.resize_with(count.div_ceil(LANES).max(inverse.len()), Vec::new);
+        let columns = &mut inverse[block];
+        if columns.len() != count {
+            columns.clear();
+            columns.resize(count, [0.0; LANES]);
+            columns[block * LANES..].iter_mut().take(LANES).enumerate().for_each(|(lane, row)| row[lane] = 1.0);
+            mass.solve_rows(columns.as_flattened_mut(), LANES);
         }
         true
     }

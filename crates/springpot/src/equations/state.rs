@@ -4,6 +4,7 @@ use super::assembly::Equations;
 use super::context::Context;
 use super::control::{ControlState, End, Eye, OfSamples, Sampler, Shown};
 use super::friction::Sliding;
+use super::rounding::Shares;
 use super::variation::Variation;
 use crate::elements::Kept;
 use crate::system::System;
@@ -19,6 +20,7 @@ pub(crate) struct EquationsState {
     /// Of every element, the force at the start of the next step without the share of a singular start, and that share, N or N·m.
     forces: Vec<[f64; 2]>,
     is_singular: bool,
+    rounding: Shares,
 }
 
 impl Equations {
@@ -103,6 +105,7 @@ impl Equations {
             control.commit();
         }
         self.bank.commit_account();
+        self.rounding.shares.commit();
         Ok(())
     }
 
@@ -114,12 +117,13 @@ impl Equations {
             sliding: self.friction.sliding.clone(),
             forces: self.elements.iter().map(|nodes| [nodes.force, nodes.singular]).collect(),
             is_singular: self.is_singular,
+            rounding: self.rounding.shares.clone(),
         }
     }
 
     /// Goes on from a state of the same system; `false`, and nothing changed, where it is of another one.
     pub(crate) fn load(&mut self, state: EquationsState) -> bool {
-        let EquationsState { elements, control, sliding, forces, is_singular } = state;
+        let EquationsState { elements, control, sliding, forces, is_singular, rounding } = state;
         let fits = forces.len() == self.elements.len() && self.friction.fits(&sliding);
         let controls = match (&mut self.control, control) {
             (None, None) => true,
@@ -135,6 +139,7 @@ impl Equations {
             (nodes.force, nodes.singular) = (force, singular);
         }
         self.is_singular = is_singular;
+        self.rounding.shares = rounding;
         self.tangent.forget();
         true
     }

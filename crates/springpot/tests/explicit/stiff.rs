@@ -3,7 +3,7 @@
 use super::{SPRING_DAMPER, apart, chain, run, system};
 use crate::support::run_system;
 use springpot::Simulation;
-use springpot::system::{Adaptive, RowTimes, RunError, Settings, Unfit};
+use springpot::system::{Adaptive, RowTimes, RunError, Settings, System, Unfit};
 
 /// Damping of the first joint that grows a million times about t = 1 s and goes back about t = 2 s.
 fn turning_stiff() -> String {
@@ -25,27 +25,68 @@ fn what_turns_stiff_goes_on_with_the_other_method_and_back() {
     }
 }
 
+/// Steps to the end, and goes on from every state on the way: gives the simulation at its end.
+fn goes_on_from_every_state(system: &System, settings: &Settings) -> Simulation {
+    let begin = || Simulation::new(system.clone(), settings.clone()).unwrap();
+    let bits =
+        |of: &Simulation| (of.t().to_bits(), of.q().iter().chain(of.v()).map(|x| x.to_bits()).collect::<Vec<_>>());
+    let (mut whole, mut used, mut states, mut ends) = (begin(), begin(), Vec::new(), Vec::new());
+    while whole.step().unwrap() {
+        states.push(whole.state().unwrap());
+        ends.push(bits(&whole));
+    }
+    for (k, state) in states.iter().enumerate() {
+        used.set_state(state).unwrap();
+        for expected in &ends[k + 1..(k + 4).min(ends.len())] {
+            assert!(used.step().unwrap());
+            assert!(bits(&used) == *expected, "from step {k}");
+        }
+    }
+    whole
+}
+
 #[test]
 fn goes_on_to_the_bit_across_changes_of_method() {
     let system = system(&turning_stiff(), 4.0);
     let settings =
         Settings { adaptive: Adaptive::Either, rtol: 1e-6, ..Settings::new(4.0, RowTimes::Times([4.0].into())) };
-    let begin = || Simulation::new(system.clone(), settings.clone()).unwrap();
-    let (mut whole, mut used, mut states) = (begin(), begin(), Vec::new());
-    let mut ends = Vec::new();
-    while whole.step().unwrap() {
-        states.push(whole.state().unwrap());
-        ends.push((whole.t().to_bits(), whole.q().iter().chain(whole.v()).map(|x| x.to_bits()).collect::<Vec<_>>()));
-    }
+    let whole = goes_on_from_every_state(&system, &settings);
     assert!(whole.report().method_switches.unwrap() >= 2);
-    for (k, state) in states.iter().enumerate() {
-        used.set_state(state).unwrap();
-        for expected in &ends[k + 1..(k + 4).min(ends.len())] {
-            assert!(used.step().unwrap());
-            let found = (used.t().to_bits(), used.q().iter().chain(used.v()).map(|x| x.to_bits()).collect::<Vec<_>>());
-            assert!(found == *expected, "from step {k}");
-        }
+}
+
+#[test]
+fn long_chains_take_over_to_the_bit_what_rounding_does() {
+    let system = system(&chain(18, [SPRING_DAMPER; 2]), 0.05);
+    for adaptive in [Adaptive::Explicit, Adaptive::Radau] {
+        let settings = Settings { adaptive, rtol: 1e-9, ..Settings::new(0.05, RowTimes::Times([0.05].into())) };
+        let steps = goes_on_from_every_state(&system, &settings).report().steps;
+        assert!(steps > 20, "{steps}");
     }
+}
+
+/// Two metres of links, all alike, that hang from the world: the shorter they are, the faster they answer.
+fn rope(links: usize) -> String {
+    let count = links as f64;
+    let (length, middle, mass, damping) = (2.0 / count, 1.0 / count, 4.0 / count, 0.2 / count);
+    let turning = mass * length * length / 12.0;
+    let mut text = String::from("[robot]\n");
+    for k in 0..links {
+        let from = if k == 0 { 0.0 } else { length };
+        text += &format!(
+            "[[robot.body]]\nname = \"b{k}\"\njoint = {{ name = \"q{k}\", kind = \"revolute\", axis = [0, 1, 0], \
+             origin = [{from}, 0, 0], damping = {damping} }}\nmass = {mass}\ncom = [{middle}, 0, 0]\n\
+             inertia = {{ xx = {turning}, yy = {turning}, zz = {turning} }}\n"
+        );
+    }
+    text + &format!("[motion]\nkind = \"forward\"\nstart = {{ q = {{ q0 = 0.3, q{} = 0.5 }} }}\n", links / 2)
+}
+
+#[test]
+fn long_chains_are_left_to_implicit_steps() {
+    let system = system(&rope(100), 0.1);
+    let steps = |adaptive| run(&system, 0.1, &[0.1], adaptive, 1e-6).report;
+    let (radau, own) = (steps(Adaptive::Radau), steps(Adaptive::Either));
+    assert!(own.steps < 2 * radau.steps && own.method_switches == Some(1), "{radau:?} {own:?}");
 }
 
 #[test]
