@@ -186,7 +186,7 @@ fn compare_within(share: f64, text: &str, columns: &[&str], paths: &[(&str, f64)
                 moved.set("sensitivity=").unwrap();
             }
             moved.set(&format!("{path}={:?}", value + steps * step)).unwrap();
-            moved.set("solver.rtol=1e-12").unwrap();
+            moved.set("solver.rtol=1e-13").unwrap();
             rows(&plan(&moved).unwrap_or_else(|refusals| panic!("{refusals}")), &names)
         };
         let [a, b, c, d] = [1.0, -1.0, 2.0, -2.0].map(at);

@@ -1,5 +1,8 @@
 //! What rounding does to accelerations, so that nothing below it is taken for an error of a step.
 
+mod weights;
+
+use self::weights::Weights;
 use super::assembly::{Equations, Tangent};
 use super::context::Context;
 use super::node::Node;
@@ -50,6 +53,7 @@ impl Shares {
 pub(super) struct Rounding {
     /// √M_kk of every velocity, by which all that the rigid bodies do is bounded (Cauchy and Schwarz).
     roots: Vec<f64>,
+    weights: Weights,
     /// Of each element, N.
     pulls: Vec<f64>,
     /// Of each free velocity, N or N·m.
@@ -76,10 +80,12 @@ impl Equations {
     /// `allowed`, the tolerance of each velocity, is not far above what it has of its own, by |M⁻¹| from all of them.
     ///
     /// Terms of the equations of motion round as they are before they cancel: weights as |g| √(m_k M_kk), m_k being the mass that k carries,
+    /// or less where k slides across them ([`Weights`]),
     /// inertia as √M_kk Σ √M_jj (|a_j| + ω |v_j|).
     pub(crate) fn round(&mut self, cx: Context, at: Node, h: f64, allowed: impl Fn(usize) -> f64) -> &[f64] {
         let mut rounding = std::mem::take(&mut self.rounding);
         self.round_pulls(cx, at.t, h, &mut rounding.pulls);
+        rounding.weights.take(&cx.system.model, &self.tangent.kinematics);
         self.round_forces(cx, at, h, &mut rounding);
         let (n, count) = (cx.system.model.nv(), self.free().len());
         let mass = |k: usize| self.slopes().d_a[k * n + k];
@@ -130,11 +136,10 @@ impl Equations {
 
     /// Of all that acts on each free velocity.
     fn round_forces(&self, cx: Context, at: Node, h: f64, rounding: &mut Rounding) {
-        let Rounding { roots, pulls, forces, .. } = rounding;
+        let Rounding { roots, weights, pulls, forces, .. } = rounding;
         let (model, n, slopes) = (&cx.system.model, cx.system.model.nv(), self.slopes());
         roots.clear();
         roots.extend((0..n).map(|k| slopes.d_a[k * n + k].max(0.0).sqrt()));
-        let gravity = model.gravity().iter().map(|g| g * g).sum::<f64>().sqrt();
         let turning: f64 = model.turning(at.v).map(f64::abs).sum();
         let moved: f64 =
             roots.iter().zip(at.a).zip(at.v).map(|((root, a), v)| root * (a.abs() + turning * v.abs())).sum();
@@ -142,7 +147,7 @@ impl Equations {
         let t = at.t + h;
         let mut free = self.free().iter().peekable();
         for (j, signals) in self.forward.forced(model) {
-            let carried = gravity * model.subtree_mass(j).sqrt();
+            let carried = weights.felt(model, j) * model.subtree_mass(j).sqrt();
             for (k, signal) in model.v_range(j).zip(signals) {
                 if free.next_if(|free| **free == k).is_none() {
                     continue;

@@ -270,3 +270,37 @@ fn a_rotor_alone_turns() {
     }
     assert!((run.column("energy.kinetic").last().unwrap() - 0.5 * 0.02 * 15.0 * 15.0).abs() < 1e-10);
 }
+
+/// A weight across the axis of a slider makes nothing of its motion, however small or slow that is; one partly along it is what the motion is told from.
+#[test]
+fn small_and_slow_motions_beside_weights() {
+    let mut worst = 0.0f64;
+    for (axis, along) in [("[1, 0, 0]", 0.0), ("[0.6, 0.8, 0]", 0.0), ("[0.6, 0, 0.8]", -9.81 * 0.8)] {
+        for (amplitude, period) in [(1.0, 2.0), (1e-9, 2.0), (1e-12, 2.0), (1.0, 2e4), (1.0, 2e9)] {
+            for method in ["", "method = \"radau\"", "method = \"explicit\""] {
+                let omega = std::f64::consts::TAU / period;
+                let (k, c) = (omega * omega, 0.02 * omega);
+                let end = 3.0 * period;
+                let run = run(&format!(
+                    "[robot]\ngravity = [0, 0, -9.81]\n[[robot.body]]\nname = \"a\"\nmass = 1\njoint = {{ name = \"x\", kind = \"prismatic\", axis = {axis} }}\n\
+                     [[element]]\nname = \"s\"\njoint = \"x\"\nlaw = \"kelvin-voigt\"\nparameters = {{ k = {k:e}, c = {c:e} }}\n\
+                     [motion]\nkind = \"forward\"\nstart = {{ q = {{ x = {amplitude:e} }} }}\n[time]\nend = {end:e}\noutput_step = {step:e}\n\
+                     [solver]\nrtol = 1e-9\n{method}\n",
+                    step = end / 60.0,
+                ));
+                assert!(run.error.is_none(), "{axis} {amplitude} {period} {method}: {:?}", run.error);
+                let (rest, decay) = (along / k, 0.5 * c);
+                let swing = (k - decay * decay).sqrt();
+                let exact = |t: f64| {
+                    let (sin, cos) = (swing * t).sin_cos();
+                    rest + (amplitude - rest) * (-decay * t).exp() * (cos + decay / swing * sin)
+                };
+                let wanted: Vec<f64> = run.t().into_iter().map(exact).collect();
+                let error = distance(&run.column("q.x"), &wanted) / largest([amplitude, rest]);
+                assert!(error < 1e-8, "{axis} {amplitude} {period} {method}: {error:e}");
+                worst = worst.max(error);
+            }
+        }
+    }
+    println!("{worst:.1e}");
+}
