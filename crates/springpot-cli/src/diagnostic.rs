@@ -5,7 +5,7 @@ use crate::{plain, terminal};
 use miette::ThemeStyles;
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, Severity, SourceCode, ThemeCharacters};
 use springpot::law::Catalog;
-use springpot::model::urdf::UrdfError;
+use springpot::model::description::DescriptionError;
 use springpot_run::Warning;
 use springpot_scenario::{Cases, Place, Refusal, RefusalKind, Refusals, Remark, Scenario, Source};
 use std::fmt::{self, Display};
@@ -60,10 +60,12 @@ fn pointed(severity: Severity, refusal: &Refusal) {
 }
 
 /// Prints what is wrong with a URDF file on stderr, with the tag that it is about.
-pub(crate) fn urdf_refused(urdf_error: &UrdfError) {
-    let help = urdf_error.problem.is_of_no_mass().then(|| ACCEPT_INERTIA.to_owned());
-    let alone = || show(&Shown::plain(Severity::Error, urdf_error.to_string(), help.clone()));
-    let UrdfError { file: Some(file), place: Some((line, column)), problem } = urdf_error else { return alone() };
+pub(crate) fn description_refused(description_error: &DescriptionError) {
+    let help = description_error.problem.is_of_no_mass().then(|| ACCEPT_INERTIA.to_owned());
+    let alone = || show(&Shown::plain(Severity::Error, description_error.to_string(), help.clone()));
+    let DescriptionError { file: Some(file), place: Some((line, column)), problem } = description_error else {
+        return alone();
+    };
     // The reader keeps no text; where the file has changed since, the message stands alone.
     let text = std::fs::read(file).map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).unwrap_or_default();
     let Some(start) = byte_at(&text, *line, *column) else { return alone() };

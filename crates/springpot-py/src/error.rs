@@ -4,7 +4,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyTuple};
-use springpot::model::urdf::UrdfError;
+use springpot::model::description::DescriptionError;
 use springpot::system::RunError;
 use springpot_run::Trouble;
 use springpot_scenario::Refusals;
@@ -45,7 +45,7 @@ pub(crate) fn model_error(py: Python<'_>, message: impl Display) -> PyErr {
 }
 
 /// `ModelError` of a URDF file.
-pub(crate) fn urdf_error(py: Python<'_>, error: &UrdfError) -> PyErr {
+pub(crate) fn description_error(py: Python<'_>, error: &DescriptionError) -> PyErr {
     model_error(py, error)
 }
 
@@ -70,7 +70,7 @@ pub(crate) fn case_error(py: Python<'_>, trouble: &Trouble) -> PyErr {
 }
 
 /// `ModelError` of a file that is not there, which is a `FileNotFoundError` too.
-pub(crate) fn missing_model(py: Python<'_>, error: &UrdfError, path: &Path) -> PyErr {
+pub(crate) fn missing_model(py: Python<'_>, error: &DescriptionError, path: &Path) -> PyErr {
     let words = PyDict::new(py);
     match words.set_item("filename", path.as_os_str()) {
         Ok(()) => raise(py, "MissingModelError", &error.to_string(), &words),

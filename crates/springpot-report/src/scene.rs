@@ -123,6 +123,8 @@ pub enum Shape {
     Box([f64; 3]),
     /// Radius and length along z, centred, m.
     Cylinder(f64, f64),
+    /// Radii along its axes, m.
+    Ellipsoid([f64; 3]),
     /// Radius, m.
     Sphere(f64),
 }

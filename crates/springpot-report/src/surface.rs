@@ -88,7 +88,7 @@ fn visuals(scene: &Scene) -> impl Iterator<Item = &Visual> {
 pub(crate) fn is_drawable(visual: &Visual) -> bool {
     let sizes: &[f64] = match &visual.shape {
         Shape::Mesh { scale, .. } => scale,
-        Shape::Box(sizes) => sizes,
+        Shape::Box(sizes) | Shape::Ellipsoid(sizes) => sizes,
         Shape::Cylinder(radius, length) => &[*radius, *length],
         Shape::Sphere(radius) => std::slice::from_ref(radius),
     };

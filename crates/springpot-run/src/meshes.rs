@@ -5,10 +5,10 @@
 //! nobody knows who has not seen it there), and meshes are those that this file names, inside its folder and its packages.
 
 use crate::record::{Record, RobotFile};
-use springpot::model::urdf::{Urdf, UrdfOptions, Visual, VisualShape};
+use springpot::model::description::{DescriptionOptions, RobotDescription, Visual, VisualShape};
 use springpot_report::MeshFile;
 use springpot_report::scene::{Body, Scene, Shape, Visual as Drawn};
-use springpot_scenario::UrdfPlan;
+use springpot_scenario::DescriptionPlan;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Component, Path, PathBuf, absolute};
@@ -22,7 +22,7 @@ pub(crate) struct RobotPlace {
 
 impl RobotPlace {
     /// Of a robot that was read from a file.
-    pub(crate) fn of(plan: &UrdfPlan) -> Option<Self> {
+    pub(crate) fn of(plan: &DescriptionPlan) -> Option<Self> {
         let file = plain(plan.robot.file.as_ref()?);
         // A folder is relative to the scenario, as the file is.
         let written = Path::new(&plan.written);
@@ -73,8 +73,8 @@ pub(crate) fn files(record: &Record, results: &Path) -> (BTreeMap<String, MeshFi
         }
         let package_path = robot.package_path.iter().map(|path| plain(&results.join(path))).collect();
         // What the run took is taken.
-        let options = UrdfOptions { accept_inertia: true, package_path, ..UrdfOptions::default() };
-        let Ok(urdf) = Urdf::read(&file, &options) else { continue };
+        let options = DescriptionOptions { accept_inertia: true, package_path, ..DescriptionOptions::default() };
+        let Ok(urdf) = RobotDescription::read(&file, &options) else { continue };
         for visual in urdf.visuals.iter().flatten().chain(&urdf.root.visuals) {
             if let Visual { shape: VisualShape::Mesh { place: Some(place), .. }, .. } = visual {
                 let file = MeshFile { path: place.path.clone(), folder: place.folder.clone() };

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 use springpot::elements::Element;
 use springpot::equations::Pose;
 use springpot::law::{InputValue, Network, Point, Term};
-use springpot::model::urdf::{self, VisualShape};
+use springpot::model::description::{self, VisualShape};
 use springpot::model::{Anchor, BodySpec, JointKind, JointSpec, Mimic, Move, Parent};
 use springpot::system::System;
 use springpot_report::ElementSign;
@@ -24,7 +24,7 @@ const POINTS: usize = 400;
 /// One case as it is drawn, without the wanted path; its meshes are called by their paths from `folder`.
 pub(crate) fn scene(plan: &Plan, folder: &FilePath) -> Scene {
     let robot = plan.urdf.as_ref().map(|urdf| &urdf.robot);
-    let visual = |shown: &urdf::Visual| visual(shown, folder);
+    let visual = |shown: &description::Visual| visual(shown, folder);
     let places = Places::of(plan);
     let mut bodies = Vec::new();
     for (index, body) in plan.bodies.iter().enumerate() {
@@ -244,13 +244,14 @@ impl Places {
 }
 
 /// A shape of a URDF file; nothing for files that were not found.
-fn visual(visual: &urdf::Visual, folder: &FilePath) -> Option<Visual> {
+fn visual(visual: &description::Visual, folder: &FilePath) -> Option<Visual> {
     let shape = match &visual.shape {
         VisualShape::Mesh { place, scale, .. } => {
             Shape::Mesh { path: meshes::name(folder, &place.as_ref()?.path), scale: *scale }
         }
         VisualShape::Box(sizes) => Shape::Box(*sizes),
         VisualShape::Cylinder { radius, length } => Shape::Cylinder(*radius, *length),
+        VisualShape::Ellipsoid(radii) => Shape::Ellipsoid(*radii),
         VisualShape::Sphere { radius } => Shape::Sphere(*radius),
     };
     Some(Visual { origin: visual.origin, rpy: visual.rpy, color: visual.color, shape })

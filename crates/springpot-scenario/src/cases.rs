@@ -14,7 +14,7 @@ use crate::plan::{OutputPlan, Plan};
 use crate::plan::{control, steady};
 use crate::reader::constants;
 use crate::reader::files::CsvCache;
-use crate::reader::files::UrdfCache;
+use crate::reader::files::DescriptionCache;
 use crate::reader::{Context, Read, Table};
 use crate::robot;
 use crate::robot::Robot;
@@ -53,7 +53,7 @@ pub struct Cases {
     catalog: Catalog,
     folder: PathBuf,
     tables: CsvCache,
-    robots: UrdfCache,
+    robots: DescriptionCache,
     document: Node,
     axes: Vec<Axis>,
     /// By what runs are differentiated.
@@ -121,7 +121,7 @@ impl Cases {
             catalog: catalog.clone(),
             folder: scenario.folder.clone(),
             tables: CsvCache::default(),
-            robots: UrdfCache::default(),
+            robots: DescriptionCache::default(),
             document: scenario.document.clone(),
             axes: Vec::new(),
             sensitivity: None,

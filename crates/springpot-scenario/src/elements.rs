@@ -15,7 +15,7 @@ use crate::reader::named::{checked_name, unique};
 use crate::reader::{Field, Read, Refused, Table, all};
 use crate::robot::Robot;
 use crate::signals::plan::SignalPlan;
-use crate::text::document::{Node, shorten};
+use crate::text::document::{Entry, Node, Value, shorten};
 use crate::text::names;
 use crate::text::refusal::RefusalKind;
 use crate::time::Duration;
@@ -23,8 +23,10 @@ use shape::Shape;
 use springpot::elements::{Component, Element};
 use springpot::fractional::scheme::{Scheme, SchemeNameError};
 use springpot::law::{Derivative, Past, RuleError};
+use springpot::model::description::JointSpring;
 use springpot::system::RowTimes;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Most elements of a robot.
 pub(crate) const MAX_ELEMENTS: usize = 10_000;
@@ -42,18 +44,24 @@ pub(crate) struct Elements {
 
 /// Reads every `[[element]]`; each component of a bushing is an element of its own.
 pub(crate) fn read(root: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> Read<Elements> {
-    let Some(field) = root.get("element") else { return Ok(Elements::default()) };
-    let items = field.items("an array of tables: [[element]]")?;
+    let field = root.get("element");
+    let items = field.as_ref().map_or(Ok(Vec::new()), |field| field.items("an array of tables: [[element]]"))?;
+    let springs = springs(root, robot);
+    let springs =
+        springs.iter().map(|node| Field { ctx: root.ctx, node, key: "element", row: None, owner: root.what.clone() });
+    let items: Vec<Field<'_>> = items.into_iter().chain(springs).collect();
     let count: usize = items.iter().map(|item| bushing(item.node).map_or(1, <[_]>::len)).sum();
-    if count > MAX_ELEMENTS {
-        let message = format!("holds {count} elements; at most {MAX_ELEMENTS} are taken");
-        return Err(field.refuse(RefusalKind::TooLarge, message, None));
-    }
     let nv = robot.model().nv();
-    if count * nv > MAX_GRADIENTS {
-        let message = format!("holds {count} elements on a robot of {nv} velocities");
-        let help = format!("elements times velocities may be {MAX_GRADIENTS} at most: each pair makes a column");
-        return Err(field.refuse(RefusalKind::TooLarge, message, Some(help)));
+    if let Some(field) = items.first() {
+        if count > MAX_ELEMENTS {
+            let message = format!("holds {count} elements; at most {MAX_ELEMENTS} are taken");
+            return Err(field.refuse(RefusalKind::TooLarge, message, None));
+        }
+        if count * nv > MAX_GRADIENTS {
+            let message = format!("holds {count} elements on a robot of {nv} velocities");
+            let help = format!("elements times velocities may be {MAX_GRADIENTS} at most: each pair makes a column");
+            return Err(field.refuse(RefusalKind::TooLarge, message, Some(help)));
+        }
     }
     let mut seen = HashMap::new();
     let read = all(items.iter().enumerate().map(|(i, item)| {
@@ -85,6 +93,32 @@ pub(crate) fn read(root: &Table<'_>, robot: &Robot, time: Option<&Duration>) -> 
         if is_enabled { elements.acting.push(plan) } else { elements.absent.push((place, plan)) }
     }
     Ok(elements)
+}
+
+/// The springs that the robot's file gives its joints, as elements that were written so: `NAME_spring` on joint NAME.
+fn springs(root: &Table<'_>, robot: &Robot) -> Vec<Node> {
+    let file = root.node.get("robot").and_then(|robot| robot.get("mjcf"));
+    let place = file.map_or(&root.node.place, |file| &file.place);
+    let table = |entries: Vec<(&str, Value)>| {
+        let entry = |(key, value): (&str, Value)| Entry {
+            key: key.to_owned(),
+            key_place: place.clone(),
+            node: Arc::new(Node { value, place: place.clone(), tag: None }),
+        };
+        Value::Table(entries.into_iter().map(entry).collect())
+    };
+    let number = |value: f64| Value::Number { value, integer: None };
+    let springs = robot.parts.urdf.iter().flat_map(|plan| &plan.robot.springs);
+    let elements = springs.map(|JointSpring { joint, stiffness, slack }| {
+        table(vec![
+            ("name", Value::Text(format!("{joint}_spring"))),
+            ("joint", Value::Text(joint.clone())),
+            ("network", Value::Text("spring(k)".to_owned())),
+            ("parameters", table(vec![("k", number(*stiffness))])),
+            ("rest", number(*slack)),
+        ])
+    });
+    elements.map(|value| Node { value, place: place.clone(), tag: None }).collect()
 }
 
 /// Why a key of another kind of element cannot stand in this one.

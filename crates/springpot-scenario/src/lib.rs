@@ -73,7 +73,7 @@ pub use plan::events::EventPlan;
 pub use plan::metrics::{Band, Metric, MetricPlan};
 pub use plan::sensitivity::{ParameterPlan, SensitivityPlan};
 pub use plan::{OutputPlan, Plan};
-pub use robot::described::{BodyPlaces, EndStops, Gripper, RobotPlan, UrdfPlan};
+pub use robot::described::{BodyPlaces, DescriptionPlan, EndStops, Gripper, RobotPlan};
 pub use scenario::{LoneElement, Portable, Scenario, json_schema};
 pub use signals::plan::SignalPlan;
 pub use text::glob::matches;

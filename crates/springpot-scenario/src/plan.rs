@@ -17,7 +17,7 @@ use crate::motion::MotionPlan;
 use crate::plan::design::DesignPlan;
 use crate::plan::events::EventPlan;
 use crate::plan::metrics::MetricPlan;
-use crate::robot::described::{BodyPlaces, EndStops, Gripper, UrdfPlan};
+use crate::robot::described::{BodyPlaces, DescriptionPlan, EndStops, Gripper};
 use crate::text::refusal::Remark;
 use sensitivity::SensitivityPlan;
 use springpot::model::{BodySpec, Model};
@@ -38,7 +38,7 @@ pub struct Plan {
     /// Where each body stands in the scenario; those of a URDF file stand where the file is named.
     pub body_places: Vec<BodyPlaces>,
     /// The URDF file that the bodies come from, if they do.
-    pub urdf: Option<UrdfPlan>,
+    pub urdf: Option<DescriptionPlan>,
     /// The gripper, if there is one.
     pub gripper: Option<Gripper>,
     /// Whether limits of joints are stops.

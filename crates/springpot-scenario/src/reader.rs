@@ -9,7 +9,7 @@ pub(crate) mod spacing;
 use self::constants::Constant;
 use crate::keys::{self, Bound, Key, Keys, Need, Shape, Slot};
 use crate::reader::files::CsvCache;
-use crate::reader::files::UrdfCache;
+use crate::reader::files::DescriptionCache;
 use crate::text::document::{self, Entry, Node, Value, shorten};
 use crate::text::names;
 use crate::text::refusal::{Refusal, RefusalKind, Refusals, Remark};
@@ -38,7 +38,7 @@ pub(crate) struct Context<'a> {
     /// Folder that paths in the scenario are relative to.
     pub(crate) folder: &'a Path,
     pub(crate) tables: &'a CsvCache,
-    pub(crate) robots: &'a UrdfCache,
+    pub(crate) robots: &'a DescriptionCache,
     /// The keys of the whole scenario, which paths begin with.
     pub(crate) whole: &'static Keys,
     refusals: RefCell<Vec<Refusal>>,
@@ -51,7 +51,12 @@ pub(crate) struct Context<'a> {
 }
 
 impl<'a> Context<'a> {
-    pub(crate) fn new(catalog: &'a Catalog, folder: &'a Path, tables: &'a CsvCache, robots: &'a UrdfCache) -> Self {
+    pub(crate) fn new(
+        catalog: &'a Catalog,
+        folder: &'a Path,
+        tables: &'a CsvCache,
+        robots: &'a DescriptionCache,
+    ) -> Self {
         static NONE: Keys = Keys { words: "", keys: &[] };
         let (refusals, swept, constants, warnings) = Default::default();
         Self { catalog, folder, tables, robots, whole: &NONE, refusals, swept, constants, warnings }

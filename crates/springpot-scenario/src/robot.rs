@@ -7,7 +7,7 @@ mod joint;
 pub(crate) mod urdf;
 
 use self::described::{Parts, unknown_body};
-use crate::keys::{ANCHOR, END_STOPS, FROM_URDF, ROBOT};
+use crate::keys::{ANCHOR, END_STOPS, FROM_MJCF, FROM_URDF, ROBOT};
 use crate::reader::{Field, Read, Table};
 use crate::robot::described::{EndStops, Gripper};
 use crate::text::names;
@@ -15,7 +15,7 @@ use crate::text::refusal::RefusalKind;
 use springpot::model::{Anchor, Dimension, JointKind, Model, Parent, Space, Units};
 use std::collections::HashMap;
 
-const RIGHT: &str = "urdf = \"arm.urdf\", or a [[robot.body]] for each body";
+const RIGHT: &str = "urdf = \"arm.urdf\", mjcf = \"arm.xml\", or a [[robot.body]] for each body";
 
 /// The robot as it is described.
 pub(crate) struct Robot {
@@ -59,10 +59,15 @@ impl<'a> OwnJoint<'a> {
 /// Reads `[robot]`.
 pub(crate) fn read(root: &Table<'_>) -> Read<Robot> {
     let field = root.require("robot")?;
-    let from_urdf = field.node.get("urdf").is_some();
-    let kind = if from_urdf { FROM_URDF } else { "" };
-    let urdf_only = |key: &str| {
+    let has = |key: &str| field.node.get(key).is_some();
+    let kind = match (has("urdf"), has("mjcf")) {
+        (true, _) => FROM_URDF,
+        (false, true) => FROM_MJCF,
+        (false, false) => "",
+    };
+    let file_only = |key: &str| {
         let help = match key {
+            "floating_base" if kind == FROM_MJCF => "; its <freejoint> says what floats",
             "floating_base" => "; give the first [[robot.body]] a joint of kind = \"floating\" instead",
             "accept_inertia" => "; correct the inertia of the [[robot.body]] instead",
             _ => "",
@@ -70,14 +75,25 @@ pub(crate) fn read(root: &Table<'_>) -> Read<Robot> {
         let message = || format!("`{key}` of [robot] belongs to `urdf`, and this robot has none{help}");
         ROBOT.is_of_a_kind(key).then(|| (RefusalKind::Rule, message()))
     };
-    let table = Table::of_kind(root.ctx, field.node, "[robot]", (&ROBOT, kind), urdf_only)?;
-    let gravity = table.vector("gravity");
-    let parts = match (table.get("urdf"), table.get("body")) {
-        (Some(_), Some(bodies)) => {
-            let help = "a robot is a URDF file or [[robot.body]] blocks: leave one of them out".to_owned();
-            return Err(bodies.refuse(RefusalKind::Rule, "stands beside `urdf`", Some(help)));
+    let table = Table::of_kind(root.ctx, field.node, "[robot]", (&ROBOT, kind), file_only)?;
+    let mut gravity = table.vector("gravity");
+    let file = match (table.get("urdf"), table.get("mjcf")) {
+        (Some(_), Some(mjcf)) => {
+            let help = "a robot is one file: leave one of them out".to_owned();
+            return Err(mjcf.refuse(RefusalKind::Rule, "stands beside `urdf`", Some(help)));
         }
-        (Some(file), None) => urdf::read(&table, &file, gravity)?,
+        (urdf, mjcf) => urdf.or(mjcf),
+    };
+    let parts = match (file, table.get("body")) {
+        (Some(file), Some(bodies)) => {
+            let help = "a robot is a file or [[robot.body]] blocks: leave one of them out".to_owned();
+            return Err(bodies.refuse(RefusalKind::Rule, format!("stands beside `{}`", file.key), Some(help)));
+        }
+        (Some(file), None) => {
+            let parts = urdf::read(&table, &file, gravity)?;
+            gravity = Ok(parts.model.gravity());
+            parts
+        }
         (None, Some(bodies)) => bodies::read(&table, &bodies, gravity)?,
         (None, None) => return Err(table.missing("body", RIGHT)),
     };

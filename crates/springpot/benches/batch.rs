@@ -11,7 +11,7 @@ use springpot::dynamics::{
     AbaDerivatives, Kinematics, RneaDerivatives, Workspace, aba_derivatives_into, aba_into, coriolis_into, crba_into,
     frame_jacobian_at_into, mass_inverse_into, pair_into, rnea_derivatives_into, rnea_into,
 };
-use springpot::model::urdf::{Urdf, UrdfOptions};
+use springpot::model::description::{DescriptionOptions, RobotDescription};
 use springpot::model::{Anchor, Frame, Model, Parent, Site};
 use springpot::spatial::SimdLevel;
 
@@ -37,9 +37,10 @@ struct Case {
 impl Case {
     fn new(name: &str, is_floating: bool) -> Self {
         let path = format!("{}/../../testdata/multibody/{name}.urdf", env!("CARGO_MANIFEST_DIR"));
-        let options = UrdfOptions { floating_base: is_floating, ..UrdfOptions::default() };
-        let model =
-            Urdf::read(path.as_ref(), &options).and_then(|urdf| urdf.model([0.0, 0.0, -9.81])).expect("a robot");
+        let options = DescriptionOptions { floating_base: is_floating, ..DescriptionOptions::default() };
+        let model = RobotDescription::read(path.as_ref(), &options)
+            .and_then(|urdf| urdf.model([0.0, 0.0, -9.81]))
+            .expect("a robot");
         let last = Parent::Body(model.joint_body(model.joint_count() - 1));
         let site = |body, point| model.resolve(&Anchor { body, point }).expect("the body exists");
         let ends = [site(Parent::Body(1), [0.14, -0.1, 0.08]), site(last, [0.0, 0.1, 0.1])];

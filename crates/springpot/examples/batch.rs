@@ -1,7 +1,7 @@
 //! Inverse dynamics of many states of a robot on all cores, as springpot-py does them: `cargo run --release --example batch -- ROBOT.urdf [N]`.
 
 use springpot::dynamics::batch::{self, BatchWorkspace};
-use springpot::model::urdf::{Urdf, UrdfOptions};
+use springpot::model::description::{DescriptionOptions, RobotDescription};
 use std::path::Path;
 use std::time::Instant;
 
@@ -9,7 +9,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
     let path = arguments.next().ok_or("which robot?")?;
     let count: usize = arguments.next().map_or(Ok(100_000), |count| count.parse())?;
-    let model = Urdf::read(Path::new(&path), &UrdfOptions::default())?.model([0.0, 0.0, -9.81])?;
+    let model = RobotDescription::read(Path::new(&path), &DescriptionOptions::default())?.model([0.0, 0.0, -9.81])?;
     let (nq, nv) = (model.nq(), model.nv());
     let q: Vec<f64> = (0..count as u64).flat_map(|seed| model.random(seed)).collect();
     let [v, a] = [0.3, 0.7].map(|seed| (0..count * nv).map(|k| (seed + k as f64).sin()).collect::<Vec<_>>());

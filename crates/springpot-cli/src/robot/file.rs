@@ -3,13 +3,13 @@
 use crate::arguments::RobotOptions;
 use crate::diagnostic;
 use springpot::law::Catalog;
-use springpot::model::urdf::{Urdf, UrdfOptions, UrdfWarning};
+use springpot::model::description::{DescriptionOptions, DescriptionWarning, RobotDescription};
 use springpot::model::{BodySpec, JointKind, Model, Parent};
 use springpot_scenario::{RobotPlan, Scenario};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Gravity of a URDF robot, m/s²; the file says nothing of it.
+/// Gravity of a robot whose file says nothing of it, m/s².
 const STANDARD_GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 
 /// A robot as it is described, and the model built of it.
@@ -27,7 +27,7 @@ pub(crate) struct Robot {
     /// The URDF file, if there is one.
     pub(crate) urdf: Option<PathBuf>,
     /// What of it was not used or was assumed.
-    pub(crate) warnings: Vec<UrdfWarning>,
+    pub(crate) warnings: Vec<DescriptionWarning>,
 }
 
 /// The robot was refused; why is on stderr.
@@ -49,18 +49,18 @@ fn from_urdf(options: &RobotOptions, overrides: &[String]) -> Result<Robot, Refu
         diagnostic::error("--set changes values of a scenario; a URDF file is taken as it is");
         return Err(Refused);
     }
-    let how = UrdfOptions {
+    let how = DescriptionOptions {
         floating_base: options.floating_base,
         ignore_mimic: options.ignore_mimic,
         accept_inertia: options.accept_inertia,
         package_path: options.package_path.clone(),
     };
-    let read = Urdf::read(&options.file, &how).and_then(|urdf| {
-        let model = urdf.model(STANDARD_GRAVITY)?;
+    let read = RobotDescription::read(&options.file, &how).and_then(|urdf| {
+        let model = urdf.model(urdf.gravity.unwrap_or(STANDARD_GRAVITY))?;
         Ok((urdf, model))
     });
     let (urdf, model) = read.map_err(|error| {
-        diagnostic::urdf_refused(&error);
+        diagnostic::description_refused(&error);
         Refused
     })?;
     Ok(Robot {
@@ -117,7 +117,7 @@ fn from_scenario(options: &RobotOptions, overrides: &[String], catalog: &Catalog
 }
 
 /// What the world is called, and the mass of that link, kg.
-fn base(urdf: &Urdf) -> (String, f64) {
+fn base(urdf: &RobotDescription) -> (String, f64) {
     match urdf.floating_base {
         true => ("world".to_owned(), 0.0),
         false => (urdf.root.name.clone(), urdf.root.inertial.map_or(0.0, |inertial| inertial.mass)),

@@ -2,12 +2,12 @@
 
 use super::PyModel;
 use super::core::Core;
-use crate::error::{guarded, missing_model, model_error, scenario_error, urdf_error};
+use crate::error::{description_error, guarded, missing_model, model_error, scenario_error};
 use crate::pickle::{self, Reduced, reduced};
 use crate::scenario::{CATALOG, asked};
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
-use springpot::model::urdf::{Urdf, UrdfOptions};
+use springpot::model::description::{DescriptionOptions, RobotDescription};
 use springpot::spatial::Rotation;
 use springpot_run::Asked;
 use springpot_scenario::RobotPlan;
@@ -15,27 +15,27 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// What the bytes of a model begin with.
-const TAG: &str = "springpot model 1\n";
+const TAG: &str = "springpot model 2\n";
 
-/// Gravity of a URDF robot, m/s²; the file says nothing of it.
+/// Gravity of a robot whose file says nothing of it, m/s².
 const STANDARD_GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 
 /// All that a model is made of, but the files that a scenario names.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) enum Origin {
-    Urdf { path: PathBuf, text: String, options: UrdfOptions, gravity: [f64; 3] },
+    File { path: PathBuf, text: String, options: DescriptionOptions, gravity: Option<[f64; 3]> },
     Scenario(Asked),
 }
 
 impl Origin {
     fn model(self, py: Python<'_>) -> PyResult<PyModel> {
         match &self {
-            Self::Urdf { path, text, options, gravity } => {
-                let built = Urdf::parse(text, Some(path), options).and_then(|urdf| {
-                    let model = urdf.model(*gravity)?;
+            Self::File { path, text, options, gravity } => {
+                let built = RobotDescription::parse(text, Some(path), options).and_then(|urdf| {
+                    let model = urdf.model(gravity.or(urdf.gravity).unwrap_or(STANDARD_GRAVITY))?;
                     Ok((urdf, model))
                 });
-                let (urdf, model) = built.map_err(|error| urdf_error(py, &error))?;
+                let (urdf, model) = built.map_err(|error| description_error(py, &error))?;
                 let stem = || path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
                 Ok(PyModel {
                     core: Core::new(Arc::new(model)),
@@ -83,13 +83,12 @@ impl PyModel {
         gravity: Option<[f64; 3]>,
     ) -> PyResult<Self> {
         guarded(py, || {
-            let text = Urdf::read_text(&path).map_err(|error| match path.try_exists() {
+            let text = RobotDescription::read_text(&path).map_err(|error| match path.try_exists() {
                 Ok(false) => missing_model(py, &error, &path),
-                _ => urdf_error(py, &error),
+                _ => description_error(py, &error),
             })?;
-            let gravity = gravity.unwrap_or(STANDARD_GRAVITY);
-            let options = UrdfOptions { floating_base, ignore_mimic, accept_inertia, package_path };
-            Origin::Urdf { path, text, options, gravity }.model(py)
+            let options = DescriptionOptions { floating_base, ignore_mimic, accept_inertia, package_path };
+            Origin::File { path, text, options, gravity }.model(py)
         })
     }
 

@@ -191,6 +191,7 @@ fn visuals(
         let solid = match &visual.shape {
             Shape::Box(sizes) => Solid::cuboid(*sizes),
             Shape::Sphere(radius) => Solid::sphere(*radius, ROUND),
+            Shape::Ellipsoid(radii) => Solid::sphere(1.0, ROUND).stretched(*radii),
             Shape::Cylinder(radius, length) => {
                 let centred = Placement { shift: [0.0, 0.0, -0.5 * length], ..Placement::IDENTITY };
                 Solid::cylinder(*radius, *length, ROUND).placed(&centred)

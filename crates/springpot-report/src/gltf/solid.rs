@@ -120,6 +120,20 @@ impl Solid {
         solid
     }
 
+    /// The same, longer by these factors along its axes, its normals with it.
+    pub(super) fn stretched(mut self, factors: [f64; 3]) -> Self {
+        let by = |vector: [f32; 3], factor: &dyn Fn(f64) -> f64| {
+            [0, 1, 2].map(|k| f64::from(vector[k]) * factor(factors[k]))
+        };
+        for position in &mut self.positions {
+            *position = by(*position, &|factor| factor).map(|number| number as f32);
+        }
+        for normal in &mut self.normals {
+            *normal = unit(by(*normal, &f64::recip));
+        }
+        self
+    }
+
     /// The same elsewhere.
     pub(super) fn placed(mut self, placement: &Placement) -> Self {
         for position in &mut self.positions {

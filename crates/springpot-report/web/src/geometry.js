@@ -153,6 +153,7 @@ export function shapeGeometry(shape, meshes) {
   if (shape.mesh) return { parts: meshes[shape.mesh.index] ?? [], scale: shape.mesh.scale ?? [1, 1, 1], turn: false };
   if (shape.box) return one(new BoxGeometry(...shape.box));
   if (shape.cylinder) return one(new CylinderGeometry(shape.cylinder[0], shape.cylinder[0], shape.cylinder[1], 32), true);
+  if (shape.ellipsoid) return { ...one(new SphereGeometry(1, 28, 18)), scale: shape.ellipsoid };
   if (shape.sphere) return one(new SphereGeometry(shape.sphere, 28, 18));
   return null;
 }

@@ -8,7 +8,7 @@ use crate::cases::{read_plan, root};
 use crate::changes::path::{self, Step};
 use crate::plan::Plan;
 use crate::plan::sensitivity::ParameterPlan;
-use crate::reader::files::{CsvCache, UrdfCache};
+use crate::reader::files::{CsvCache, DescriptionCache};
 use crate::reader::{Context, Field, Read, Refused, Table, all};
 use crate::robot;
 use crate::scenario::Scenario;
@@ -39,7 +39,7 @@ impl Fitting {
         catalog: &Catalog,
         law: Option<(&str, super::laws::Size)>,
     ) -> Result<Self, Refusals> {
-        let (tables, robots) = (CsvCache::default(), UrdfCache::default());
+        let (tables, robots) = (CsvCache::default(), DescriptionCache::default());
         let context = || Context::new(catalog, &scenario.folder, &tables, &robots).of_whole(&SCENARIO);
         let mut document = scenario.document.clone();
         let ctx = context();

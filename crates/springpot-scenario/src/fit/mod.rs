@@ -17,7 +17,7 @@ use crate::cases::{read_plan, root};
 use crate::changes::path::Step;
 use crate::plan::Plan;
 use crate::reader::Context;
-use crate::reader::files::{CsvCache, UrdfCache};
+use crate::reader::files::{CsvCache, DescriptionCache};
 use crate::scenario::Scenario;
 use crate::scenario::root::SCENARIO;
 use crate::sensitivity::{self, Asked, By};
@@ -36,7 +36,7 @@ pub struct Fitting {
     catalog: Catalog,
     folder: PathBuf,
     tables: CsvCache,
-    robots: UrdfCache,
+    robots: DescriptionCache,
     records: Vec<Case>,
     plan: FitPlan,
     remarks: Vec<Remark>,

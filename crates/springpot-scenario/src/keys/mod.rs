@@ -38,7 +38,9 @@ pub(crate) use metric::METRIC;
 pub use metric::MetricKind;
 pub(crate) use motion::{FLOATING, FORCES, POSE, SEPARATOR, SIGNAL, SPHERICAL, START, START_POSE, START_VELOCITIES};
 pub(crate) use output::OUTPUT;
-pub(crate) use robot::{ANCHOR, BODY, CHANGED_JOINT, END_STOPS, FRICTION, FROM_URDF, INERTIA, JOINT, MIMIC, ROBOT};
+pub(crate) use robot::{
+    ANCHOR, BODY, CHANGED_JOINT, END_STOPS, FRICTION, FROM_MJCF, FROM_URDF, INERTIA, JOINT, MIMIC, ROBOT,
+};
 pub(crate) use sensitivity::{ADJOINT, FORWARD, PARAMETER, PRIOR, SENSITIVITY};
 pub(crate) use solver::{FORWARD_RUNS, SOLVER, SOLVER_FIELDS, TIME, TIMES};
 pub use sweep::MAX_CASES;

@@ -1,7 +1,7 @@
 //! `[robot]`.
 
 use super::{Bound, Key, Keys, Need, Shape, key};
-use springpot::model::urdf::UrdfWarningKind;
+use springpot::model::description::DescriptionWarningKind;
 use springpot::model::{FRICTION_SPEED, JointKind};
 
 /// What to write where a name is missing.
@@ -12,16 +12,25 @@ const FORCE: [&str; 2] = ["N*m", "N"];
 /// The kind of robots from a URDF file.
 pub(crate) const FROM_URDF: &str = "with urdf";
 const WITH_URDF: &[&str] = &[FROM_URDF];
+/// The kind of robots from an MJCF file.
+pub(crate) const FROM_MJCF: &str = "with mjcf";
+const WITH_FILE: &[&str] = &[FROM_URDF, FROM_MJCF];
 const ZERO: Need = Need::Vector([0.0; 3]);
 
-/// The kinds of it that `only` knows: robots from a URDF file.
+/// The kinds of it that `only` knows: robots from files.
 pub(crate) static ROBOT: Keys = Keys {
     words: "A robot.",
     keys: &[
-        key("gravity", Shape::Vector("m/s^2"), Need::Vector([0.0, 0.0, -9.81]), "Gravity in the axes of the world."),
+        key(
+            "gravity",
+            Shape::Vector("m/s^2"),
+            Need::Vector([0.0, 0.0, -9.81]),
+            "Gravity in the axes of the world; of an MJCF file its own where it is left out.",
+        ),
         key("body", Shape::Tables(&BODY, None), Need::OneOf, "Bodies, parents before children."),
         key("gripper", Shape::Table(&ANCHOR), Need::Optional, "The point that a gripper path moves."),
         key("urdf", Shape::Text, Need::OneOf, "Path of a URDF file, relative to the scenario."),
+        key("mjcf", Shape::Text, Need::OneOf, "Path of an MJCF file, relative to the scenario."),
         key(
             "floating_base",
             Shape::Flag,
@@ -37,7 +46,7 @@ pub(crate) static ROBOT: Keys = Keys {
             Need::Flag(false),
             "Whether inertias that no distribution of mass has are taken as they are.",
         )
-        .only(WITH_URDF),
+        .only(WITH_FILE),
         key(
             "limits",
             Shape::Table(&END_STOPS),
@@ -50,21 +59,21 @@ pub(crate) static ROBOT: Keys = Keys {
             Need::Optional,
             "Joints of the file with another kind or with a rotor.",
         )
-        .only(WITH_URDF),
+        .only(WITH_FILE),
         key(
             "package_path",
             Shape::Texts,
             Need::Said("[]"),
             "Folders that are packages or hold some, for package:// paths.",
         )
-        .only(WITH_URDF),
+        .only(WITH_FILE),
         key(
             "accept",
-            Shape::WordList(|| UrdfWarningKind::ALL.map(UrdfWarningKind::name).to_vec()),
+            Shape::WordList(|| DescriptionWarningKind::ALL.map(DescriptionWarningKind::name).to_vec()),
             Need::Said("[]"),
             "Kinds of warnings of the file that were read and need not be told again.",
         )
-        .only(WITH_URDF),
+        .only(WITH_FILE),
     ],
 };
 
@@ -241,7 +250,7 @@ pub(crate) static MIMIC: Keys = Keys {
 
 /// What a scenario says of a joint of a URDF file; the kinds of it that `only` knows are kinds of joint.
 pub(crate) static CHANGED_JOINT: Keys = Keys {
-    words: "What the scenario says of a joint of the URDF file.",
+    words: "What the scenario says of a joint of the file.",
     keys: &[
         key("name", Shape::Text, Need::Required(NAME), "Name of the joint."),
         key("kind", Shape::Words(joint_kinds), Need::Said("as in the file"), "Another kind; axis and origin stay."),

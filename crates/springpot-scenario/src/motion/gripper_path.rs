@@ -8,7 +8,7 @@ use crate::signals::plan::SignalPlan;
 use crate::text::refusal::RefusalKind;
 use serde_json::{Map, Value, json};
 use springpot::model::Model;
-use springpot::model::urdf::FLOATING_BASE;
+use springpot::model::description::FLOATING_BASE;
 use springpot::motion::gripper_path::{Course, Task};
 use springpot::motion::{GripperPath, Trajectory};
 use springpot::system::Motion;

@@ -3,7 +3,7 @@
 use crate::cases::root;
 use crate::keys::{CONSTRAINT, DESIGN};
 use crate::plan::Plan;
-use crate::reader::files::{CsvCache, UrdfCache};
+use crate::reader::files::{CsvCache, DescriptionCache};
 use crate::reader::{Context, Field, Read, Table, all};
 use crate::scenario::Scenario;
 use crate::scenario::root::SCENARIO;
@@ -63,7 +63,7 @@ impl Scenario {
             return Err(missing("[[parameter]]", help));
         }
         let mut scenario = self.clone();
-        let (tables, robots) = (CsvCache::default(), UrdfCache::default());
+        let (tables, robots) = (CsvCache::default(), DescriptionCache::default());
         let ctx = Context::new(catalog, &self.folder, &tables, &robots).of_whole(&SCENARIO);
         let blocks = root(&ctx, document).and_then(|root| match root.get("parameter") {
             Some(field) => sensitivity::blocks(&root, &field),

@@ -5,7 +5,7 @@ use crate::keys::MetricKind;
 use crate::plan::Plan;
 use crate::reader::constants;
 use crate::reader::files::CsvCache;
-use crate::reader::files::UrdfCache;
+use crate::reader::files::DescriptionCache;
 use crate::reader::named::{checked_name, unique};
 use crate::reader::{Context, Field, Read, Refused, Table, all};
 use crate::text::document::{Entry, Node, Value, shorten};
@@ -241,7 +241,7 @@ impl Metric {
             let start = span.start + part.len() - part.trim_start().len();
             start..start + part.trim().len()
         };
-        let (catalog, tables, robots) = (Catalog::standard(), CsvCache::default(), UrdfCache::default());
+        let (catalog, tables, robots) = (Catalog::standard(), CsvCache::default(), DescriptionCache::default());
         let ctx = Context::new(&catalog, Path::new(""), &tables, &robots);
         // What else a metric has stands in front of the commas.
         let tail = Node { value: Value::Table(entries.clone()), place: whole.clone(), tag: None };

@@ -5,7 +5,7 @@ use crate::elements::plan::{ElementPlan, FramePlan, ShapePlan};
 use crate::figures::FigurePlan;
 use crate::keys::{ELEMENT_FIELDS, SOLVER_FIELDS, record};
 use crate::plan::Plan;
-use crate::robot::described::{EndStops, UrdfPlan};
+use crate::robot::described::{DescriptionPlan, EndStops};
 use crate::signals::plan::SignalPlan;
 use serde_json::{Map, Value, json};
 use springpot::model::{Anchor, BodySpec, FrictionLaw, JointSpec, Limits, Mimic, Parent};
@@ -155,7 +155,7 @@ impl Plan {
     }
 }
 
-fn urdf(plan: &UrdfPlan) -> Value {
+fn urdf(plan: &DescriptionPlan) -> Value {
     json!({
         "file": plan.written,
         "robot": plan.robot.name,

@@ -1,7 +1,7 @@
 //! Files that were read, so that the cases of a sweep share them.
 
 use crate::csv::{CsvError, CsvTable, Dialect};
-use springpot::model::urdf::{Urdf, UrdfError, UrdfOptions, UrdfWarningKind};
+use springpot::model::description::{DescriptionError, DescriptionOptions, DescriptionWarningKind, RobotDescription};
 use springpot::signal::{SampleError, Signal};
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -59,10 +59,10 @@ pub(crate) struct CsvSamples {
 
 /// URDF files that were read, in the order of their first use, so that the cases of a sweep share them.
 #[derive(Debug, Default)]
-pub(crate) struct UrdfCache {
+pub(crate) struct DescriptionCache {
     entries: Mutex<Vec<Entry>>,
     /// Kinds of warnings that scenarios accept.
-    accepted: Mutex<HashSet<UrdfWarningKind>>,
+    accepted: Mutex<HashSet<DescriptionWarningKind>>,
 }
 
 #[derive(Debug)]
@@ -70,23 +70,28 @@ struct Entry {
     /// As the scenario names it: what is told of it is told elsewhere too.
     written: String,
     file: PathBuf,
-    options: UrdfOptions,
-    robot: Arc<Urdf>,
+    options: DescriptionOptions,
+    robot: Arc<RobotDescription>,
 }
 
-impl UrdfCache {
-    pub(crate) fn read(&self, written: &str, file: PathBuf, options: UrdfOptions) -> Result<Arc<Urdf>, UrdfError> {
+impl DescriptionCache {
+    pub(crate) fn read(
+        &self,
+        written: &str,
+        file: PathBuf,
+        options: DescriptionOptions,
+    ) -> Result<Arc<RobotDescription>, DescriptionError> {
         let mut entries = self.entries.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(entry) = entries.iter().find(|entry| entry.file == file && entry.options == options) {
             return Ok(entry.robot.clone());
         }
-        let robot = Arc::new(Urdf::read(&file, &options)?);
+        let robot = Arc::new(RobotDescription::read(&file, &options)?);
         entries.push(Entry { written: written.to_owned(), file, options, robot: robot.clone() });
         Ok(robot)
     }
 
     /// Warnings of these kinds are no longer told.
-    pub(crate) fn accept(&self, kinds: Vec<UrdfWarningKind>) {
+    pub(crate) fn accept(&self, kinds: Vec<DescriptionWarningKind>) {
         self.accepted.lock().unwrap_or_else(PoisonError::into_inner).extend(kinds);
     }
 
@@ -94,10 +99,10 @@ impl UrdfCache {
     pub(crate) fn kinds(&self) -> Vec<&'static str> {
         let entries = self.entries.lock().unwrap_or_else(PoisonError::into_inner);
         let kinds = entries.iter().flat_map(|entry| entry.robot.warnings.iter().map(|warning| warning.kind));
-        let mut kinds: Vec<UrdfWarningKind> = kinds.collect();
+        let mut kinds: Vec<DescriptionWarningKind> = kinds.collect();
         kinds.sort_unstable();
         kinds.dedup();
-        kinds.into_iter().map(UrdfWarningKind::name).collect()
+        kinds.into_iter().map(DescriptionWarningKind::name).collect()
     }
 
     /// What the files hold and the robots do without, each once, as `file: what`, the file as the scenario names it.

@@ -4,7 +4,7 @@ use crate::reader::{Field, Refused};
 use crate::text::document::shorten;
 use crate::text::names;
 use crate::text::refusal::{Place, RefusalKind};
-use springpot::model::urdf::Urdf;
+use springpot::model::description::RobotDescription;
 use springpot::model::{Anchor, BodySpec, Model};
 use std::sync::Arc;
 
@@ -18,7 +18,7 @@ pub struct RobotPlan {
     /// The robot built of them.
     pub model: Arc<Model>,
     /// The URDF file that the bodies come from, if they do.
-    pub urdf: Option<UrdfPlan>,
+    pub urdf: Option<DescriptionPlan>,
     /// The gripper, if there is one.
     pub gripper: Option<Gripper>,
 }
@@ -41,7 +41,7 @@ impl BodyPlaces {
 
 /// A URDF file and how it was read.
 #[derive(Debug, Clone)]
-pub struct UrdfPlan {
+pub struct DescriptionPlan {
     /// The path as written in the scenario, to whose folder it is relative.
     pub written: String,
     /// Whether mimic joints have coordinates of their own.
@@ -49,7 +49,7 @@ pub struct UrdfPlan {
     /// Folders that are packages or hold some, as written.
     pub package_path: Vec<String>,
     /// What the file says; its warnings are among those of [`crate::Cases::warnings`].
-    pub robot: Arc<Urdf>,
+    pub robot: Arc<RobotDescription>,
 }
 
 /// Limits of joints as stops, SI of each joint.
@@ -75,7 +75,7 @@ pub(crate) struct Parts {
     pub(crate) bodies: Vec<BodySpec>,
     pub(crate) places: Vec<BodyPlaces>,
     pub(crate) model: Arc<Model>,
-    pub(crate) urdf: Option<UrdfPlan>,
+    pub(crate) urdf: Option<DescriptionPlan>,
 }
 
 pub(super) fn unknown_body<'a>(field: &Field<'_>, name: &str, names: impl Iterator<Item = &'a str> + Clone) -> Refused {

@@ -6,7 +6,7 @@ use crate::elements::past::{self, PastPlan};
 use crate::elements::{MAX_ELEMENTS, check, element_name};
 use crate::keys::LONE;
 use crate::reader::files::CsvCache;
-use crate::reader::files::UrdfCache;
+use crate::reader::files::DescriptionCache;
 use crate::reader::{Context, Read, Refused, Table, all};
 use crate::signals::plan::SignalPlan;
 use crate::text::document::{Entry as Written, Node, shorten};
@@ -41,7 +41,7 @@ impl Scenario {
     /// As [`Scenario::cases`]; other keys; a past that needs more than x(0); inputs that follow from columns.
     pub fn lone_elements(&self, catalog: &Catalog) -> Result<Vec<LoneElement>, Refusals> {
         let elements = self.written()?;
-        let (tables, robots) = (CsvCache::default(), UrdfCache::default());
+        let (tables, robots) = (CsvCache::default(), DescriptionCache::default());
         let ctx = Context::new(catalog, &self.folder, &tables, &robots);
         let unnamed = elements.iter().enumerate().filter(|(_, element)| element.get("name").is_none());
         let mut seen = unnamed.map(|(k, element)| (default_name(k), element.place.clone())).collect();

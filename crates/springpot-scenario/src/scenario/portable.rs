@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Keys whose texts are names of files.
-const FILES: [&str; 2] = ["csv", "urdf"];
+const FILES: [&str; 3] = ["csv", "urdf", "mjcf"];
 
 /// The key whose texts are folders, in which nothing is looked for elsewhere.
 const FOLDERS: &str = "package_path";
@@ -31,7 +31,7 @@ pub struct Portable {
 }
 
 impl Scenario {
-    /// The scenario for another folder. Names of files are those of the keys `csv` and `urdf` and of tables of networks, where they lead to
+    /// The scenario for another folder. Names of files are those of the keys `csv`, `urdf` and `mjcf` and of tables of networks, where they lead to
     /// a file; `package_path` is emptied, since meshes count for nothing here. Comments and all other values stay as they are written.
     pub fn portable(&self) -> Portable {
         let mut moved = Moved { folder: &self.folder, tables: Vec::new(), files: Vec::new(), edits: Vec::new() };

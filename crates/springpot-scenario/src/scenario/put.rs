@@ -4,7 +4,7 @@ use super::Scenario;
 use super::root::SCENARIO;
 use crate::changes::path::{self, Step};
 use crate::reader::Context;
-use crate::reader::files::{CsvCache, UrdfCache};
+use crate::reader::files::{CsvCache, DescriptionCache};
 use crate::text::document::{Node, Value};
 use crate::text::quoted::{toml_key, toml_text};
 use springpot::law::Catalog;
@@ -15,7 +15,7 @@ impl Scenario {
     /// The text with the values that were set put in; comments stay. A key that is taken out stays too, and what finds no place is told in a comment at
     /// its end.
     pub fn with_values(&self, catalog: &Catalog) -> String {
-        let (tables, robots) = (CsvCache::default(), UrdfCache::default());
+        let (tables, robots) = (CsvCache::default(), DescriptionCache::default());
         let ctx = Context::new(catalog, &self.folder, &tables, &robots).of_whole(&SCENARIO);
         let mut edits = Edits::default();
         for set in &self.overrides {

@@ -14,7 +14,7 @@ const SILENT: [&str; 9] =
 const OF_ROWS: [&str; 3] = ["time", "solver", "metric"];
 
 /// Keys whose texts are no expressions.
-const TEXTS: [&str; 20] = [
+const TEXTS: [&str; 21] = [
     "name",
     "of",
     "body",
@@ -34,6 +34,7 @@ const TEXTS: [&str; 20] = [
     "separator",
     "outside",
     "urdf",
+    "mjcf",
     "direction",
 ];
 

@@ -135,10 +135,10 @@ fn of_a_number() -> String {
 fn why_not(document: &Node, target: &Target) -> (String, Option<String>) {
     let (section, last) = target.ends();
     let node = path::get(document, target);
-    let is_of_file = document.get("robot").is_some_and(|robot| robot.get("urdf").is_some());
+    let is_of_file = document.get("robot").is_some_and(|robot| robot.get("urdf").or(robot.get("mjcf")).is_some());
     match (section, last) {
         ("robot", _) if is_of_file && node.is_none() => (
-            "numbers in a URDF file have no path".to_owned(),
+            "numbers in a robot's file have no path".to_owned(),
             Some("write the robot as [[robot.body]] blocks".to_owned()),
         ),
         ("time", _) => ("rows say when the run is looked at, not what it does".to_owned(), Some(of_a_number())),

@@ -55,6 +55,20 @@ pub(crate) fn symmetric_eigenvalues<const N: usize>(m: [[f64; N]; N]) -> [f64; N
     values
 }
 
+/// Eigenvalues of the symmetric matrix `m`, and the matrix whose columns are their vectors.
+#[cfg(feature = "urdf")]
+pub(crate) fn symmetric_eigenvectors(m: [[f64; 3]; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
+    let mut values = [0.0; 3];
+    let rows = [0, 1, 2].map(|row| {
+        let (mut a, mut own) = (m, [0.0; 3]);
+        own[row] = 1.0;
+        diagonalise(a.as_flattened_mut(), &mut own);
+        values = [0, 1, 2].map(|k| a[k][k]);
+        own
+    });
+    (values, rows)
+}
+
 #[cfg(test)]
 mod tests {
     use super::symmetric_eigenvalues;

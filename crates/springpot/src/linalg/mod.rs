@@ -14,6 +14,8 @@ mod triangle;
 
 pub(crate) use complex::ComplexLu;
 pub(crate) use eigen::symmetric_eigenvalues;
+#[cfg(feature = "urdf")]
+pub(crate) use eigen::symmetric_eigenvectors;
 pub(crate) use gauss::{gauss_rule, gauss_rules};
 pub(crate) use hessenberg::eigenvalues;
 pub(crate) use independence::{are_independent, cholesky_solve};

@@ -21,6 +21,8 @@
 
 mod builder;
 mod degree;
+#[cfg(feature = "urdf")]
+pub mod description;
 mod dimension;
 mod error;
 mod frame;
@@ -33,8 +35,6 @@ mod robot;
 mod spec;
 mod state;
 mod turns;
-#[cfg(feature = "urdf")]
-pub mod urdf;
 mod validate;
 
 pub use builder::ModelBuilder;

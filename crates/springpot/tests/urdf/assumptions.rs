@@ -1,11 +1,11 @@
 //! What is assumed, and what is odd about numbers: warnings that name the link or joint.
 
 use crate::support::{ARM, FLOATING, arm_and, arm_with, parse, parse_with, warned, warned_with};
-use springpot::model::urdf::UrdfWarningKind::{
+use springpot::model::description::DescriptionWarningKind::{
     AxisLength, IncompleteLimit, MimicIgnored, NoAxis, NoInertial, NoLimit, NoName, NotPositive, NotUsed,
     OfFloatingJoint, PointMass, Renamed, SenselessLimit, TriangleInequality, ZeroMass,
 };
-use springpot::model::urdf::{Owner, UrdfOptions, UrdfPlace};
+use springpot::model::description::{DescriptionOptions, DescriptionPlace, Owner};
 use springpot::model::{JointKind, Limits};
 
 const LIMIT: &str = r#"<limit lower="0" upper="0.3" effort="50" velocity="1"/>"#;
@@ -66,7 +66,7 @@ fn negative_moments_on_fixed_joints() {
 
 #[test]
 fn inertias_that_are_accepted() {
-    let accepting = UrdfOptions { accept_inertia: true, ..UrdfOptions::default() };
+    let accepting = DescriptionOptions { accept_inertia: true, ..DescriptionOptions::default() };
     // Without being accepted it is listed too, and no robot can be made of it.
     let text = arm_with(INERTIA, &INERTIA.replace("0.5", "0.8"));
     let error = parse(&text).model([0.0; 3]).unwrap_err();
@@ -166,7 +166,7 @@ fn continuous_joints_have_no_lower_and_upper() {
 #[test]
 fn mimic_joints_that_are_ignored() {
     let text = arm_with("<origin xyz=\"0 0 0.4\"/>", "<mimic joint=\"shoulder\"/>");
-    let options = UrdfOptions { ignore_mimic: true, ..UrdfOptions::default() };
+    let options = DescriptionOptions { ignore_mimic: true, ..DescriptionOptions::default() };
     let message = "<mimic> not applied, own coordinates instead: joint \"elbow\" (line 25)";
     let urdf = warned_with(&text, &options, &[(MimicIgnored, message)]);
     assert_eq!((urdf.bodies[1].joint.mimic.clone(), urdf.model([0.0; 3]).unwrap().nv()), (None, 2));
@@ -221,6 +221,6 @@ fn long_lists_are_shortened_but_kept() {
                    link \"l0\" (line 31), link \"l1\" (line 32), link \"l2\" (line 33), link \"l3\" (line 34) \
                    and 6 more";
     assert_eq!((inertials.to_string().as_str(), inertials.places.len(), inertials.line()), (message, 10, 31));
-    let place = UrdfPlace { owner: Owner::Joint("j9".into()), line: 41, what: String::new() };
+    let place = DescriptionPlace { owner: Owner::Joint("j9".into()), line: 41, what: String::new() };
     assert_eq!((axes.kind, axes.places.last()), (NoAxis, Some(&place)));
 }

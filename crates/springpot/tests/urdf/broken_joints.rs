@@ -2,7 +2,7 @@
 
 use crate::support::{ARM, FLOATING, arm_and, arm_with, parse, parse_with, refused, refused_with};
 use springpot::model::Mimic;
-use springpot::model::urdf::UrdfOptions;
+use springpot::model::description::DescriptionOptions;
 
 const AXIS: &str = r#"<axis xyz="1 0 0"/>"#;
 
@@ -44,7 +44,7 @@ fn elements_that_are_missing_or_stand_twice() {
     refused(&arm_with("<parent link=\"upper\"/>", "<parent name=\"upper\"/>"), message);
     for element in ["origin", "parent", "child", "axis", "limit", "dynamics", "mimic"] {
         let text = elbow_with(&format!("<{element} link=\"upper\" joint=\"shoulder\"/><{element}/>"));
-        let error = parse_with(&text, &UrdfOptions::default()).expect_err("twice");
+        let error = parse_with(&text, &DescriptionOptions::default()).expect_err("twice");
         let message = format!("joint \"elbow\" has two <{element}>, the first in line 25; one is allowed");
         assert!(error.to_string().ends_with(&message), "{error}");
     }
@@ -149,9 +149,9 @@ fn mimic_joints_do_not_follow_one_another_in_a_circle() {
     let text = chain(["b", "a", ""]);
     let column = text.lines().nth(3).unwrap().find("<mimic").unwrap() + 1;
     refused(&text, &format!("line 4, column {column}: {message}"));
-    let error = parse_with(&chain(["b", "c", "a"]), &UrdfOptions::default()).expect_err("a circle");
+    let error = parse_with(&chain(["b", "c", "a"]), &DescriptionOptions::default()).expect_err("a circle");
     assert!(error.to_string().contains("the joints \"a\", \"b\" and \"c\" mimic one another"), "{error}");
-    let error = parse_with(&chain(["b", "c", "b"]), &UrdfOptions::default()).expect_err("a circle");
+    let error = parse_with(&chain(["b", "c", "b"]), &DescriptionOptions::default()).expect_err("a circle");
     assert!(error.to_string().contains("the joints \"b\" and \"c\" mimic one another"), "{error}");
 }
 

@@ -2,7 +2,7 @@
 
 use crate::support::{arm_and, arm_with, parse, refused};
 use springpot::model::ModelError;
-use springpot::model::urdf::UrdfProblem;
+use springpot::model::description::DescriptionProblem;
 
 const MASS: &str = r#"<mass value="2"/>"#;
 const INERTIA: &str = r#"<inertia ixx="0.3" ixy="0" ixz="0" iyy="0.4" iyz="0" izz="0.5"/>"#;
@@ -118,7 +118,7 @@ fn what_only_the_whole_robot_shows_has_the_line_of_the_link() {
         .replace("0.1\" i", "0\" i")
         .replace("izz=\"0.1\"", "izz=\"0\"");
     let error = parse(&massless).model([0.0; 3]).expect_err("singular");
-    let UrdfProblem::Model { source } = &*error.problem else { panic!("{error}") };
+    let DescriptionProblem::Model { source } = &*error.problem else { panic!("{error}") };
     assert!(matches!(source, ModelError::SingularMassMatrix { joint, .. } if joint == "elbow"), "{source}");
     assert_eq!(error.line(), Some(10));
     assert!(error.to_string().contains(&source.to_string()));

@@ -2,10 +2,10 @@
 
 use crate::support::{ARM, arm_and, arm_with, parse_with, refused};
 use crate::work::Work;
-use springpot::model::urdf::{Urdf, UrdfOptions, UrdfProblem};
+use springpot::model::description::{DescriptionOptions, DescriptionProblem, RobotDescription};
 
-fn read(path: &std::path::Path) -> springpot::model::urdf::UrdfError {
-    Urdf::read(path, &UrdfOptions::default()).expect_err("this is no robot")
+fn read(path: &std::path::Path) -> springpot::model::description::DescriptionError {
+    RobotDescription::read(path, &DescriptionOptions::default()).expect_err("this is no robot")
 }
 
 #[test]
@@ -13,7 +13,7 @@ fn files_that_cannot_be_read() {
     let folder = tempfile::tempdir().unwrap();
     let missing = folder.path().join("missing.urdf");
     let error = read(&missing);
-    assert!(matches!(*error.problem, UrdfProblem::Unreadable { .. }));
+    assert!(matches!(*error.problem, DescriptionProblem::Unreadable { .. }));
     assert!(error.to_string().starts_with(&format!("{}: cannot be read: ", missing.display())), "{error}");
     let error = read(folder.path());
     assert_eq!(error.to_string(), format!("{}: not a regular file", folder.path().display()));
@@ -31,7 +31,7 @@ fn a_file_is_named_with_line_and_column() {
     let message = "value of <mass> of link \"upper\" holds \"two\", which is not a number";
     assert_eq!(read(&path).to_string(), format!("{}:6:20: {message}", path.display()));
     std::fs::write(&path, ARM).unwrap();
-    assert_eq!(Urdf::read(&path, &UrdfOptions::default()).unwrap().file, Some(path));
+    assert_eq!(RobotDescription::read(&path, &DescriptionOptions::default()).unwrap().file, Some(path));
 }
 
 #[test]
@@ -68,16 +68,13 @@ fn documents_with_entities() {
 
 #[test]
 fn other_kinds_of_xml() {
-    let other = "the outermost element is";
-    refused(
-        "<sdf/>",
-        &format!("line 1, column 1: {other} <sdf>, not <robot>; this is an SDF file, and only URDF is read"),
-    );
-    let message =
-        format!("line 2, column 1: {other} <mujoco>, not <robot>; this is a MuJoCo file (MJCF), and only URDF is read");
-    refused("<!-- -->\n<mujoco/>", &message);
-    refused("<Robot/>", &format!("line 1, column 1: {other} <Robot>, not <robot>; names are case-sensitive"));
-    refused("<html/>", &format!("line 1, column 1: {other} <html>, not <robot>"));
+    let told = |element: &str, help: &str| {
+        format!("the outermost element is <{element}>, neither <robot> (URDF) nor <mujoco> (MJCF){help}")
+    };
+    let sdf = told("sdf", "; this is an SDF file, which is not read");
+    refused("<!-- -->\n<sdf/>", &format!("line 2, column 1: {sdf}"));
+    refused("<Robot/>", &format!("line 1, column 1: {}", told("Robot", "; names are case-sensitive")));
+    refused("<html/>", &format!("line 1, column 1: {}", told("html", "")));
     refused("<robot name=\"empty\"/>", "line 1, column 1: the robot has no <link>");
 }
 
@@ -96,13 +93,13 @@ fn xacro_must_be_expanded() {
     refused(&expression, &format!("line 25, column 18: {message}"));
     // What xacro leaves behind is fine.
     let expanded = ARM.replace("<robot", &format!("<robot {xmlns}"));
-    assert_eq!(parse_with(&expanded, &UrdfOptions::default()).unwrap().warnings, []);
+    assert_eq!(parse_with(&expanded, &DescriptionOptions::default()).unwrap().warnings, []);
 }
 
 #[test]
 fn a_default_namespace_does_not_matter() {
     let text = ARM.replace("<robot", "<robot xmlns=\"http://www.ros.org\"");
-    let urdf = parse_with(&text, &UrdfOptions::default()).unwrap();
+    let urdf = parse_with(&text, &DescriptionOptions::default()).unwrap();
     assert_eq!((urdf.bodies.len(), urdf.warnings.len()), (2, 0));
 }
 
@@ -113,10 +110,10 @@ fn hostile_texts_are_refused_in_time() {
     let message = "line 31, column 600001: not XML: expected 'a' tag, not 'robot'";
     refused(&deep, message);
     let closed = arm_and(&format!("{}{}", "<a>".repeat(200_000), "</a>".repeat(200_000)));
-    assert_eq!(parse_with(&closed, &UrdfOptions::default()).unwrap().warnings[0].places.len(), 1);
+    assert_eq!(parse_with(&closed, &DescriptionOptions::default()).unwrap().warnings[0].places.len(), 1);
     let gazebo = closed.replacen("<a>", "<gazebo>", 1);
     let gazebo = format!("{}</gazebo></robot>", gazebo.trim_end().strip_suffix("</a></robot>").unwrap());
-    assert_eq!(parse_with(&gazebo, &UrdfOptions::default()).unwrap().warnings.len(), 1);
+    assert_eq!(parse_with(&gazebo, &DescriptionOptions::default()).unwrap().warnings.len(), 1);
 
     let wide: String = (0..100_000).map(|k| format!(" a{k}=\"\"")).collect();
     refused(
@@ -131,6 +128,6 @@ fn hostile_texts_are_refused_in_time() {
     refused(&"=".repeat(17_000_000), "more than 16000000 tags and attributes; this is no description of a robot");
     let comments =
         arm_and(&format!("<!-- {} --><![CDATA[<a {}]]><?a {}?>", "=".repeat(500), "=".repeat(500), "=".repeat(500)));
-    assert!(parse_with(&comments, &UrdfOptions::default()).is_ok());
+    assert!(parse_with(&comments, &DescriptionOptions::default()).is_ok());
     assert!(work.done().as_secs() < 20, "{:?}", work.done());
 }

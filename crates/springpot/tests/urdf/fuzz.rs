@@ -3,7 +3,7 @@
 use crate::robots::folder;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
-use springpot::model::urdf::{Urdf, UrdfOptions, UrdfProblem};
+use springpot::model::description::{DescriptionOptions, DescriptionProblem, RobotDescription};
 
 const ROBOTS: [&str; 4] = ["double_pendulum", "ur5", "panda", "simple_humanoid"];
 
@@ -124,9 +124,9 @@ fn apply(text: &mut Vec<u8>, edit: &Edit) {
 }
 
 /// Reads a text and builds what it describes; returns whether it was read and whether it was built.
-fn read_and_build(text: &str, options: &UrdfOptions) -> Result<(bool, bool), TestCaseError> {
+fn read_and_build(text: &str, options: &DescriptionOptions) -> Result<(bool, bool), TestCaseError> {
     let lines = text.bytes().filter(|byte| *byte == b'\n').count() + 1;
-    let urdf = match Urdf::parse(text, None, options) {
+    let urdf = match RobotDescription::parse(text, None, options) {
         Err(error) => {
             prop_assert!(error.line().is_none_or(|line| (1..=lines).contains(&line)), "{error}");
             prop_assert!(!error.to_string().contains('\n') && error.to_string().len() < 2_000, "{error}");
@@ -148,7 +148,8 @@ fn read_and_build(text: &str, options: &UrdfOptions) -> Result<(bool, bool), Tes
             Ok((true, true))
         }
         Err(error) => {
-            let is_typed = matches!(*error.problem, UrdfProblem::Model { .. } | UrdfProblem::NothingMoves { .. });
+            let is_typed =
+                matches!(*error.problem, DescriptionProblem::Model { .. } | DescriptionProblem::NothingMoves { .. });
             prop_assert!(is_typed, "{error}");
             Ok((true, false))
         }
@@ -164,7 +165,8 @@ fn fuzz(cases: u32, seed: u8) {
     let result = runner.run(&strategy, |(robot, edits, [floating_base, accept_inertia], ignore_mimic)| {
         let mut bytes = texts[robot].clone();
         edits.iter().for_each(|edit| apply(&mut bytes, edit));
-        let options = UrdfOptions { floating_base, ignore_mimic, accept_inertia, ..UrdfOptions::default() };
+        let options =
+            DescriptionOptions { floating_base, ignore_mimic, accept_inertia, ..DescriptionOptions::default() };
         let (read, built) = read_and_build(&String::from_utf8_lossy(&bytes), &options)?;
         let [all, reads, builds] = count.get();
         count.set([all + 1, reads + u32::from(read), builds + u32::from(built)]);

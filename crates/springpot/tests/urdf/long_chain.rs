@@ -2,7 +2,7 @@
 
 use crate::support::parse_with;
 use crate::work::Work;
-use springpot::model::urdf::UrdfOptions;
+use springpot::model::description::DescriptionOptions;
 use std::fmt::Write;
 use std::time::Duration;
 
@@ -32,7 +32,7 @@ fn chain(count: usize, joint: impl Fn(usize) -> String) -> String {
 fn time(text: &str) -> Duration {
     let read = || {
         let work = Work::begin();
-        assert!(parse_with(text, &UrdfOptions::default()).is_ok());
+        assert!(parse_with(text, &DescriptionOptions::default()).is_ok());
         work.done()
     };
     read().min(read()).min(read())
@@ -42,7 +42,7 @@ fn time(text: &str) -> Duration {
 fn a_hundred_thousand_links_are_read_and_built() {
     const COUNT: usize = 100_000;
     let text = chain(COUNT, |_| "type=\"continuous\">".to_owned());
-    let urdf = parse_with(&text, &UrdfOptions::default()).unwrap();
+    let urdf = parse_with(&text, &DescriptionOptions::default()).unwrap();
     assert_eq!((urdf.bodies.len(), urdf.warnings.len()), (COUNT, 0));
     let model = urdf.model([0.0, 0.0, -9.81]).unwrap();
     assert_eq!((model.nv(), model.subtree_mass(0)), (COUNT, COUNT as f64));
@@ -58,7 +58,7 @@ fn a_circle_of_a_hundred_thousand_links_is_refused() {
     const COUNT: usize = 100_000;
     let text = chain(COUNT, |_| "type=\"fixed\">".to_owned());
     let text = text.replace("<parent link=\"0\"/>", &format!("<parent link=\"{COUNT}\"/>"));
-    let error = parse_with(&text, &UrdfOptions::default()).expect_err("a circle");
+    let error = parse_with(&text, &DescriptionOptions::default()).expect_err("a circle");
     assert!(error.to_string().contains("carry one another in a circle"), "{error}");
     assert!(error.to_string().len() < 300, "{error}");
 }
@@ -67,6 +67,6 @@ fn a_circle_of_a_hundred_thousand_links_is_refused() {
 fn a_circle_of_a_hundred_thousand_mimic_joints_is_refused() {
     const COUNT: usize = 100_000;
     let text = chain(COUNT, |k| format!("type=\"continuous\"><mimic joint=\"j{}\"/>", k % COUNT + 1));
-    let error = parse_with(&text, &UrdfOptions::default()).expect_err("a circle");
+    let error = parse_with(&text, &DescriptionOptions::default()).expect_err("a circle");
     assert!(error.to_string().contains("mimic one another in a circle"), "{error}");
 }

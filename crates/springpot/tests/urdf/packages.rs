@@ -1,7 +1,9 @@
 //! Mesh files: where they are looked for, and what is said of those that are not found.
 
 use crate::support::ARM;
-use springpot::model::urdf::{Owner, Urdf, UrdfOptions, UrdfPlace, UrdfWarningKind};
+use springpot::model::description::{
+    DescriptionOptions, DescriptionPlace, DescriptionWarningKind, Owner, RobotDescription,
+};
 use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -32,13 +34,13 @@ fn looked_for(urdf: &Path, files: &[&str], package_path: &[PathBuf]) -> (Vec<Str
         .map(|file| format!("\n<visual><geometry><mesh filename=\"{file}\"/></geometry></visual>"))
         .collect();
     let text = ARM.replace("<link name=\"base\"/>", &format!("<link name=\"base\">{meshes}</link>"));
-    let options = UrdfOptions { package_path: package_path.to_vec(), ..UrdfOptions::default() };
-    let urdf = Urdf::parse(&text, Some(urdf), &options).unwrap();
-    let of = |kind: UrdfWarningKind| {
+    let options = DescriptionOptions { package_path: package_path.to_vec(), ..DescriptionOptions::default() };
+    let urdf = RobotDescription::parse(&text, Some(urdf), &options).unwrap();
+    let of = |kind: DescriptionWarningKind| {
         let places = urdf.warnings.iter().filter(|warning| warning.kind == kind).flat_map(|warning| &warning.places);
         places.map(|place| place.what.clone()).collect::<Vec<_>>()
     };
-    let (missing, outside) = (of(UrdfWarningKind::MeshNotFound), of(UrdfWarningKind::MeshOutside));
+    let (missing, outside) = (of(DescriptionWarningKind::MeshNotFound), of(DescriptionWarningKind::MeshOutside));
     let all: usize = urdf.warnings.iter().map(|warning| warning.places.len()).sum();
     assert_eq!(all, missing.len() + outside.len());
     (missing, outside)
@@ -157,12 +159,12 @@ fn a_missing_mesh_names_link_file_and_line() {
     let shapes: String = ["a.stl", "b.stl", "c.stl"].map(shape).concat();
     let path = root.path().join("arm.urdf");
     fs::write(&path, ARM.replace("<link name=\"base\"/>", &format!("<link name=\"base\">{shapes}</link>"))).unwrap();
-    let urdf = Urdf::read(&path, &UrdfOptions::default()).unwrap();
+    let urdf = RobotDescription::read(&path, &DescriptionOptions::default()).unwrap();
     let [warning] = urdf.warnings.as_slice() else { panic!("{:?}", urdf.warnings) };
     let message = "mesh files not found, not needed for the dynamics: \
                    \"a.stl\" of link \"base\" (line 3), \"b.stl\" of link \"base\" (line 4) and 1 more";
     assert_eq!(warning.to_string(), message);
-    let place = UrdfPlace { owner: Owner::Link("base".into()), line: 5, what: "c.stl".into() };
+    let place = DescriptionPlace { owner: Owner::Link("base".into()), line: 5, what: "c.stl".into() };
     assert_eq!(warning.places[2], place);
 }
 
@@ -172,5 +174,5 @@ fn nothing_is_looked_for_without_a_file() {
         "<link name=\"base\"/>",
         "<link name=\"base\"><visual><geometry><mesh filename=\"a.stl\"/></geometry></visual></link>",
     );
-    assert_eq!(Urdf::parse(&text, None, &UrdfOptions::default()).unwrap().warnings, []);
+    assert_eq!(RobotDescription::parse(&text, None, &DescriptionOptions::default()).unwrap().warnings, []);
 }

@@ -2,7 +2,7 @@
 
 use crate::support::{ARM, FLOATING, arm_with, parse, parse_with};
 use serde_json::Value;
-use springpot::model::urdf::{FLOATING_BASE, Urdf, UrdfOptions, UrdfWarningKind};
+use springpot::model::description::{DescriptionOptions, DescriptionWarningKind, FLOATING_BASE, RobotDescription};
 use springpot::model::{JointKind, Limits, Model, Parent};
 use springpot::spatial::{Placement, Rotation, Vec3};
 use std::path::{Path, PathBuf};
@@ -85,13 +85,13 @@ fn reference_robots_have_the_same_joints_and_merged_inertias() {
     for (robot, joints) in ROBOTS {
         let text = std::fs::read_to_string(folder().join(format!("{robot}.json"))).unwrap();
         let file: Value = serde_json::from_str(&text).unwrap();
-        let options = UrdfOptions {
+        let options = DescriptionOptions {
             floating_base: file["floating_base"].as_bool().unwrap(),
             ignore_mimic: robot == "panda",
-            ..UrdfOptions::default()
+            ..DescriptionOptions::default()
         };
         let path = folder().join(Path::new(file["urdf"].as_str().unwrap()).file_name().unwrap());
-        let urdf = Urdf::read(&path, &options).unwrap();
+        let urdf = RobotDescription::read(&path, &options).unwrap();
         let gravity = numbers(&file["model"]["gravity"]).try_into().unwrap();
         let model = urdf.model(gravity).unwrap_or_else(|error| panic!("{error}"));
         let described = file["model"]["joints"].as_array().unwrap();
@@ -194,7 +194,8 @@ fn the_root_may_be_called_world() {
 
     let urdf = parse_with(&text, &FLOATING).unwrap();
     assert_eq!((urdf.bodies[0].name.as_str(), urdf.root.name.as_str()), ("floating_base", "world"));
-    let told = urdf.warnings.iter().find(|warning| warning.kind == UrdfWarningKind::Renamed).unwrap().to_string();
+    let told =
+        urdf.warnings.iter().find(|warning| warning.kind == DescriptionWarningKind::Renamed).unwrap().to_string();
     assert!(told.contains("link \"world\" (line 2: called \"floating_base\" here)"), "{told}");
     let inertial =
         r#"<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>"#;

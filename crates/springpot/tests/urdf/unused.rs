@@ -1,8 +1,10 @@
 //! Elements, attributes and text that are not used: every one is listed.
 
 use crate::support::{arm_and, arm_with, warned};
-use springpot::model::urdf::Owner;
-use springpot::model::urdf::UrdfWarningKind::{InSimulator, NotUsed, StrayText, UnknownAttribute, UnknownElement};
+use springpot::model::description::DescriptionWarningKind::{
+    InSimulator, NotUsed, StrayText, UnknownAttribute, UnknownElement,
+};
+use springpot::model::description::Owner;
 
 #[test]
 fn known_elements_without_part_in_the_dynamics_are_one_line() {
@@ -67,7 +69,7 @@ fn what_changes_the_motion_in_a_simulator_is_named() {
          <gazebo reference=\"elbow\"><springStiffness>5</springStiffness><turnGravityOff>false</turnGravityOff></gazebo>
          <gazebo><plugin><joint>elbow</joint></plugin></gazebo>",
     );
-    let message = "not used, though it changes the motion in Gazebo: \
+    let message = "not used, though it changes the motion in the simulator: \
                    <turnGravityOff> (line 31), <joint> (line 32), <springStiffness> (line 33)";
     warned(&text, &[(InSimulator, message), (NotUsed, "not used: 4 <gazebo>")]);
 }

@@ -3,7 +3,7 @@
 use crate::plain;
 use crate::robot::Robot;
 use serde::Serialize;
-use springpot::model::urdf::{Owner, UrdfWarning};
+use springpot::model::description::{DescriptionWarning, Owner};
 use springpot::model::{BodySpec, DescribedJoint, JointSpec, Label, Limits, Parent};
 use springpot::spatial::Placement;
 use std::ops::Range;
@@ -225,11 +225,11 @@ fn link(body: &BodySpec) -> Link<'_> {
     Link { name, joint: &joint.name, mass: *mass, com: *com, inertia: *inertia }
 }
 
-fn warning(warning: &UrdfWarning) -> Warning<'_> {
+fn warning(warning: &DescriptionWarning) -> Warning<'_> {
     let places = warning.places.iter().map(|place| {
         let (link, joint) = match &place.owner {
-            Owner::Robot => (None, None),
-            Owner::Link(name) => (Some(name.as_str()), None),
+            Owner::Robot | Owner::Mujoco | Owner::Geom(_) | Owner::Mesh(_) => (None, None),
+            Owner::Link(name) | Owner::Body(name) => (Some(name.as_str()), None),
             Owner::Joint(name) => (None, Some(name.as_str())),
         };
         Place { link, joint, line: place.line, what: &place.what }

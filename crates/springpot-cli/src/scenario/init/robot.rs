@@ -3,7 +3,7 @@
 use crate::arguments::InitOptions;
 use crate::{Ending, diagnostic};
 use springpot::law::Catalog;
-use springpot::model::urdf::{Urdf, UrdfOptions, UrdfProblem};
+use springpot::model::description::{DescriptionOptions, DescriptionProblem, RobotDescription};
 use springpot::model::{BodySpec, DescribedJoint, Dimension, Limits, Model, Parent, Space};
 use springpot_scenario::{Scenario, suggest, toml_key};
 use std::fmt::Write as _;
@@ -26,18 +26,18 @@ const SLIDE: f64 = 0.02;
 pub(super) fn scenario(robot: &Path, out: &Path, options: &InitOptions, catalog: &Catalog) -> Result<String, Ending> {
     let floats = options.floating_base;
     let accept_inertia = options.accept_inertia;
-    let how = UrdfOptions { floating_base: floats, accept_inertia, ..UrdfOptions::default() };
-    let read = Urdf::read(robot, &how).and_then(|urdf| {
-        let model = urdf.model(GRAVITY)?;
+    let how = DescriptionOptions { floating_base: floats, accept_inertia, ..DescriptionOptions::default() };
+    let read = RobotDescription::read(robot, &how).and_then(|urdf| {
+        let model = urdf.model(urdf.gravity.unwrap_or(GRAVITY))?;
         Ok((urdf, model))
     });
     let (urdf, model) = read.map_err(|error| {
         match *error.problem {
-            UrdfProblem::NothingMoves { .. } => {
+            DescriptionProblem::NothingMoves { .. } => {
                 let help = format!("with `springpot init {} --floating-base` it floats", robot.display());
                 diagnostic::error_with_help(error.to_string(), help);
             }
-            _ => diagnostic::urdf_refused(&error),
+            _ => diagnostic::description_refused(&error),
         }
         Ending::Refused
     })?;
@@ -81,7 +81,7 @@ struct Strut {
 type Pair = (Parent, Parent, Vec<usize>);
 
 struct Starter<'a> {
-    urdf: &'a Urdf,
+    urdf: &'a RobotDescription,
     model: &'a Model,
     catalog: &'a Catalog,
     /// The robot's file as the scenario names it.

@@ -5,7 +5,8 @@ use crate::elements::material::TABLE;
 use crate::figures::FIGURE;
 use crate::keys::MOTION;
 use crate::keys::{
-    BETWEEN, BUSHING, COMPONENT, ELEMENT, FROM_URDF, JOINT, Key, Keys, Need, ON_JOINT, ROBOT, SHIFT, SIGNAL, TIME,
+    BETWEEN, BUSHING, COMPONENT, ELEMENT, FROM_MJCF, FROM_URDF, JOINT, Key, Keys, Need, ON_JOINT, ROBOT, SHIFT, SIGNAL,
+    TIME,
 };
 use serde_json::{Map, Value, json};
 use springpot::law::heat::INPUT;
@@ -98,9 +99,18 @@ pub(super) fn where_kind(kinds: &[&str], then: Value) -> Value {
 }
 
 fn of_robot() -> Value {
-    let with_urdf = ROBOT.keys.iter().filter(|key| key.only.contains(&FROM_URDF));
-    let needs: Map<String, Value> = with_urdf.map(|key| (key.name.to_owned(), json!(["urdf"]))).collect();
-    json!({ "dependencies": needs, "not": { "required": alternatives(&ROBOT) } })
+    let files = [(FROM_URDF, "urdf"), (FROM_MJCF, "mjcf")];
+    let of_files = ROBOT.keys.iter().filter(|key| !key.only.is_empty());
+    let needs = of_files.map(|key| {
+        let of =
+            files.iter().filter(|(kind, _)| key.only.contains(kind)).map(|(_, file)| json!({ "required": [file] }));
+        (key.name.to_owned(), json!({ "anyOf": of.collect::<Vec<_>>() }))
+    });
+    let needs: Map<String, Value> = needs.collect();
+    let all = alternatives(&ROBOT);
+    let pairs = all.iter().enumerate().flat_map(|(k, one)| all[k + 1..].iter().map(move |other| [one, other]));
+    let pairs: Vec<Value> = pairs.map(|pair| json!({ "required": pair })).collect();
+    json!({ "dependencies": needs, "not": { "anyOf": pairs } })
 }
 
 /// The kinds of joint that take the same keys, by the first of them.

@@ -1,6 +1,6 @@
 //! A small arm to spoil.
 
-use springpot::model::urdf::{Urdf, UrdfError, UrdfOptions, UrdfWarningKind};
+use springpot::model::description::{DescriptionError, DescriptionOptions, DescriptionWarningKind, RobotDescription};
 
 /// An arm of two joints without anything to warn of.
 pub(crate) const ARM: &str = r#"<robot name="arm">
@@ -47,26 +47,26 @@ pub(crate) fn arm_and(more: &str) -> String {
     arm_with("</robot>", &format!("{more}</robot>"))
 }
 
-pub(crate) const FLOATING: UrdfOptions =
-    UrdfOptions { floating_base: true, ignore_mimic: false, accept_inertia: false, package_path: Vec::new() };
+pub(crate) const FLOATING: DescriptionOptions =
+    DescriptionOptions { floating_base: true, ignore_mimic: false, accept_inertia: false, package_path: Vec::new() };
 
-pub(crate) fn parse_with(text: &str, options: &UrdfOptions) -> Result<Urdf, UrdfError> {
-    Urdf::parse(text, None, options)
+pub(crate) fn parse_with(text: &str, options: &DescriptionOptions) -> Result<RobotDescription, DescriptionError> {
+    RobotDescription::parse(text, None, options)
 }
 
-pub(crate) fn parse(text: &str) -> Urdf {
-    parse_with(text, &UrdfOptions::default()).unwrap_or_else(|error| panic!("{error}"))
+pub(crate) fn parse(text: &str) -> RobotDescription {
+    parse_with(text, &DescriptionOptions::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Asserts that `text` is refused with exactly this message.
 #[track_caller]
 pub(crate) fn refused(text: &str, message: &str) {
-    refused_with(text, &UrdfOptions::default(), message);
+    refused_with(text, &DescriptionOptions::default(), message);
 }
 
 /// Asserts that `text` is refused with exactly this message.
 #[track_caller]
-pub(crate) fn refused_with(text: &str, options: &UrdfOptions, message: &str) {
+pub(crate) fn refused_with(text: &str, options: &DescriptionOptions, message: &str) {
     let error = parse_with(text, options).expect_err("this is no robot");
     assert_eq!(error.to_string(), message);
     let line = message.strip_prefix("line ").map(|rest| rest.split(',').next().unwrap().parse().unwrap());
@@ -75,13 +75,17 @@ pub(crate) fn refused_with(text: &str, options: &UrdfOptions, message: &str) {
 
 /// Asserts that `text` is read with exactly these warnings.
 #[track_caller]
-pub(crate) fn warned(text: &str, warnings: &[(UrdfWarningKind, &str)]) -> Urdf {
-    warned_with(text, &UrdfOptions::default(), warnings)
+pub(crate) fn warned(text: &str, warnings: &[(DescriptionWarningKind, &str)]) -> RobotDescription {
+    warned_with(text, &DescriptionOptions::default(), warnings)
 }
 
 /// Asserts that `text` is read with exactly these warnings.
 #[track_caller]
-pub(crate) fn warned_with(text: &str, options: &UrdfOptions, warnings: &[(UrdfWarningKind, &str)]) -> Urdf {
+pub(crate) fn warned_with(
+    text: &str,
+    options: &DescriptionOptions,
+    warnings: &[(DescriptionWarningKind, &str)],
+) -> RobotDescription {
     let urdf = parse_with(text, options).unwrap_or_else(|error| panic!("{error}"));
     let found: Vec<_> = urdf.warnings.iter().map(|warning| (warning.kind, warning.to_string())).collect();
     let expected: Vec<_> = warnings.iter().map(|&(kind, text)| (kind, text.to_owned())).collect();

@@ -1,9 +1,9 @@
 //! `<limit>` of a joint.
 
-use super::error::UrdfError;
+use super::error::DescriptionError;
 use super::problem::Owner;
 use super::reader::{Node, Reader};
-use super::warning::UrdfWarningKind;
+use super::warning::DescriptionWarningKind;
 use crate::model::kind::JointKind;
 use crate::model::spec::Limits;
 
@@ -24,11 +24,11 @@ pub(super) fn read<'a>(
     limit: Option<Node<'a>>,
     owner: &Owner,
     kind: JointKind,
-) -> Result<Limits, UrdfError> {
+) -> Result<Limits, DescriptionError> {
     let turns_freely = kind == JointKind::Continuous;
     let Some(node) = limit else {
         if !turns_freely {
-            reader.warnings.add(UrdfWarningKind::NoLimit, owner, reader.line(joint), "");
+            reader.warnings.add(DescriptionWarningKind::NoLimit, owner, reader.line(joint), "");
         }
         return Ok(Limits::NONE);
     };
@@ -45,11 +45,11 @@ pub(super) fn read<'a>(
         match value {
             None => {
                 let what = format!("{name} taken as unlimited");
-                reader.warnings.add(UrdfWarningKind::IncompleteLimit, owner, line, what);
+                reader.warnings.add(DescriptionWarningKind::IncompleteLimit, owner, line, what);
             }
             // Some exporters write 0 where they know nothing.
             Some(value) if value <= 0.0 => {
-                reader.warnings.add(UrdfWarningKind::SenselessLimit, owner, line, format!("{name} {value}"));
+                reader.warnings.add(DescriptionWarningKind::SenselessLimit, owner, line, format!("{name} {value}"));
             }
             Some(value) => *limit = value,
         }
@@ -67,17 +67,17 @@ pub(super) fn read<'a>(
         _ => "",
     };
     if !missing.is_empty() {
-        reader.warnings.add(UrdfWarningKind::IncompleteLimit, owner, line, missing);
+        reader.warnings.add(DescriptionWarningKind::IncompleteLimit, owner, line, missing);
     }
     let (lower, upper) = (lower.unwrap_or(0.0), upper.unwrap_or(0.0));
     if lower > upper || lower == f64::INFINITY || upper == f64::NEG_INFINITY {
         let what = format!("lower {lower} and upper {upper}");
-        reader.warnings.add(UrdfWarningKind::SenselessLimit, owner, line, what);
+        reader.warnings.add(DescriptionWarningKind::SenselessLimit, owner, line, what);
     } else {
         let farthest = [lower, upper].into_iter().filter(|x| x.is_finite()).fold(0.0, |most: f64, x| most.max(x.abs()));
         if kind == JointKind::Revolute && farthest > MOST_TURN {
             let what = format!("lower {lower} and upper {upper}");
-            reader.warnings.add(UrdfWarningKind::LimitInDegrees, owner, line, what);
+            reader.warnings.add(DescriptionWarningKind::LimitInDegrees, owner, line, what);
         }
         (limits.lower, limits.upper) = (lower, upper);
     }
@@ -85,7 +85,12 @@ pub(super) fn read<'a>(
 }
 
 /// A number that may be infinite.
-fn bound<'a>(reader: &Reader<'a>, node: Node<'a>, owner: &Owner, name: &'static str) -> Result<Option<f64>, UrdfError> {
+fn bound<'a>(
+    reader: &Reader<'a>,
+    node: Node<'a>,
+    owner: &Owner,
+    name: &'static str,
+) -> Result<Option<f64>, DescriptionError> {
     match reader.text(node, name).map(|text| text.trim().to_ascii_lowercase()).as_deref() {
         Some("inf" | "+inf" | "infinity" | "+infinity") => Ok(Some(f64::INFINITY)),
         Some("-inf" | "-infinity") => Ok(Some(f64::NEG_INFINITY)),

@@ -7,18 +7,18 @@ use super::problem::Owner;
 
 /// Something that was not used, or assumed, at one or more places of the file.
 ///
-/// `Display` is one line: what it is and the first places; [`UrdfWarning::places`] has all of them.
+/// `Display` is one line: what it is and the first places; [`DescriptionWarning::places`] has all of them.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct UrdfWarning {
+pub struct DescriptionWarning {
     /// What it is.
-    pub kind: UrdfWarningKind,
+    pub kind: DescriptionWarningKind,
     /// Where, in the order of the file; at least one.
-    pub places: Vec<UrdfPlace>,
+    pub places: Vec<DescriptionPlace>,
 }
 
 /// Where a warning applies.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct UrdfPlace {
+pub struct DescriptionPlace {
     /// The link or joint.
     pub owner: Owner,
     /// Line of the file, from 1.
@@ -30,7 +30,7 @@ pub struct UrdfPlace {
 /// The kinds of warning; what concerns the motion comes first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
-pub enum UrdfWarningKind {
+pub enum DescriptionWarningKind {
     /// A link on a moving joint has no `<inertial>`; it is taken as massless.
     NoInertial,
     /// A link on a moving joint has the mass 0.
@@ -42,8 +42,8 @@ pub enum UrdfWarningKind {
     /// The tensor is used as it is.
     TriangleInequality,
     /// A link on a fixed joint, or the root on a fixed base, has a principal moment below −1e-12 of its largest; with
-    /// [`UrdfOptions::accept_inertia`](super::UrdfOptions::accept_inertia) a link on any joint. What is fixed to the world has
-    /// no part in the dynamics; of what moves, [`Urdf::model`](super::Urdf::model) decides.
+    /// [`DescriptionOptions::accept_inertia`](super::DescriptionOptions::accept_inertia) a link on any joint. What is fixed to the world has
+    /// no part in the dynamics; of what moves, [`RobotDescription::model`](super::RobotDescription::model) decides.
     NotPositive,
     /// A moving joint has no `<axis>`; 1 0 0 is assumed, as the format says.
     NoAxis,
@@ -63,7 +63,7 @@ pub enum UrdfWarningKind {
     Renamed,
     /// An `<axis>`, `<dynamics>`, `<limit>` or `<mimic>` of a floating joint, which has no use for it.
     OfFloatingJoint,
-    /// Something inside `<gazebo>` that changes the motion in that simulator.
+    /// Something that changes the motion in a simulator: inside `<gazebo>`, or of MJCF.
     InSimulator,
     /// The robot has no name.
     NoName,
@@ -93,7 +93,7 @@ enum Style {
     Numbers,
 }
 
-impl UrdfWarningKind {
+impl DescriptionWarningKind {
     /// Every kind.
     pub const ALL: [Self; 22] = [
         Self::NoInertial,
@@ -165,7 +165,7 @@ impl UrdfWarningKind {
             Self::MimicIgnored => ("<mimic> not applied, own coordinates instead", Style::Owners),
             Self::Renamed => ("names that are reserved", Style::Owners),
             Self::OfFloatingJoint => ("not used, the joint is floating", Style::Elements),
-            Self::InSimulator => ("not used, though it changes the motion in Gazebo", Style::Elements),
+            Self::InSimulator => ("not used, though it changes the motion in the simulator", Style::Elements),
             Self::NoName => ("no name", Style::Owners),
             Self::UnknownElement | Self::UnknownAttribute => ("not known, not used", Style::Elements),
             Self::StrayText => ("text between elements, not used", Style::Elements),
@@ -178,16 +178,16 @@ impl UrdfWarningKind {
     }
 }
 
-impl UrdfWarning {
+impl DescriptionWarning {
     /// Line of the first place, from 1.
     pub fn line(&self) -> usize {
         self.places[0].line
     }
 
     /// How often each `what` stands here, and its first place, in the order of the file.
-    fn groups(&self) -> Vec<(usize, &UrdfPlace)> {
+    fn groups(&self) -> Vec<(usize, &DescriptionPlace)> {
         let mut index = HashMap::new();
-        let mut groups: Vec<(usize, &UrdfPlace)> = Vec::new();
+        let mut groups: Vec<(usize, &DescriptionPlace)> = Vec::new();
         for place in &self.places {
             let at = *index.entry(place.what.as_str()).or_insert(groups.len());
             match groups.get_mut(at) {
@@ -199,15 +199,15 @@ impl UrdfWarning {
     }
 }
 
-impl fmt::Display for UrdfWarning {
+impl fmt::Display for DescriptionWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (lead, style) = self.kind.words();
         write!(f, "{lead}: ")?;
-        let owner_and_line = |UrdfPlace { owner, line, what }: &UrdfPlace| match what.as_str() {
+        let owner_and_line = |DescriptionPlace { owner, line, what }: &DescriptionPlace| match what.as_str() {
             "" => format!("{owner} (line {line})"),
             what => format!("{owner} (line {line}: {what})"),
         };
-        let of_owner = |UrdfPlace { owner, line, what }: &UrdfPlace| match owner {
+        let of_owner = |DescriptionPlace { owner, line, what }: &DescriptionPlace| match owner {
             Owner::Robot => format!("{what} (line {line})"),
             owner => format!("{what} of {owner} (line {line})"),
         };
@@ -216,7 +216,9 @@ impl fmt::Display for UrdfWarning {
             Style::Files => listed(
                 f,
                 2,
-                self.places.iter().map(|UrdfPlace { owner, line, what }| format!("{what:?} of {owner} (line {line})")),
+                self.places
+                    .iter()
+                    .map(|DescriptionPlace { owner, line, what }| format!("{what:?} of {owner} (line {line})")),
             ),
             Style::Elements => {
                 let groups = self.groups().into_iter().map(|(count, first)| match count {
@@ -228,7 +230,7 @@ impl fmt::Display for UrdfWarning {
             Style::Numbers => listed(
                 f,
                 16,
-                self.groups().into_iter().map(|(count, UrdfPlace { what, .. })| format!("{count} {what}")),
+                self.groups().into_iter().map(|(count, DescriptionPlace { what, .. })| format!("{count} {what}")),
             ),
         }
     }
@@ -245,18 +247,18 @@ fn listed(f: &mut fmt::Formatter<'_>, shown: usize, items: impl ExactSizeIterato
 
 /// Warnings while they are gathered.
 #[derive(Debug, Default)]
-pub(super) struct Warnings(BTreeMap<UrdfWarningKind, Vec<UrdfPlace>>);
+pub(super) struct Warnings(BTreeMap<DescriptionWarningKind, Vec<DescriptionPlace>>);
 
 impl Warnings {
-    pub(super) fn add(&mut self, kind: UrdfWarningKind, owner: &Owner, line: usize, what: impl Into<String>) {
-        self.0.entry(kind).or_default().push(UrdfPlace { owner: owner.clone(), line, what: what.into() });
+    pub(super) fn add(&mut self, kind: DescriptionWarningKind, owner: &Owner, line: usize, what: impl Into<String>) {
+        self.0.entry(kind).or_default().push(DescriptionPlace { owner: owner.clone(), line, what: what.into() });
     }
 
     /// By kind; within one in the order of the file.
-    pub(super) fn finish(self) -> Vec<UrdfWarning> {
-        let in_order = |(kind, mut places): (_, Vec<UrdfPlace>)| {
+    pub(super) fn finish(self) -> Vec<DescriptionWarning> {
+        let in_order = |(kind, mut places): (_, Vec<DescriptionPlace>)| {
             places.sort_by_key(|place| place.line);
-            UrdfWarning { kind, places }
+            DescriptionWarning { kind, places }
         };
         self.0.into_iter().map(in_order).collect()
     }

@@ -3,21 +3,21 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use super::problem::UrdfProblem;
+use super::problem::DescriptionProblem;
 
 /// Why a URDF file is no robot; `Display` is `file:line:column: what is wrong and what would be right`.
 #[derive(Debug)]
-pub struct UrdfError {
+pub struct DescriptionError {
     /// The file, as it was given; `None` for text that came without one.
     pub file: Option<PathBuf>,
     /// Line and column, from 1; the column counts characters.
     pub place: Option<(usize, usize)>,
     /// What is wrong.
-    pub problem: Box<UrdfProblem>,
+    pub problem: Box<DescriptionProblem>,
 }
 
-impl UrdfError {
-    pub(super) fn new(file: Option<&Path>, place: Option<(usize, usize)>, problem: UrdfProblem) -> Self {
+impl DescriptionError {
+    pub(super) fn new(file: Option<&Path>, place: Option<(usize, usize)>, problem: DescriptionProblem) -> Self {
         Self { file: file.map(Path::to_path_buf), place, problem: Box::new(problem) }
     }
 
@@ -27,7 +27,7 @@ impl UrdfError {
     }
 }
 
-impl fmt::Display for UrdfError {
+impl fmt::Display for DescriptionError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (&self.file, self.place) {
             (Some(file), Some((line, column))) => write!(f, "{}:{line}:{column}: ", file.display())?,
@@ -39,7 +39,7 @@ impl fmt::Display for UrdfError {
     }
 }
 
-impl std::error::Error for UrdfError {
+impl std::error::Error for DescriptionError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         self.problem.source()
     }

@@ -1,11 +1,11 @@
-//! Robots from URDF files.
+//! Robots as files describe them: URDF and MJCF.
 //!
-//! [`Urdf::read`] turns a file into bodies as [`ModelBuilder`] takes them, and says what it left out. The format is
-//! that of <https://wiki.ros.org/urdf/XML>; where it leaves a choice, urdfdom's is taken unless the doc comments here
-//! say otherwise.
+//! [`RobotDescription::read`] turns a file into bodies as [`ModelBuilder`] takes them, and says what it left out; which format it has, its outermost
+//! element says. URDF is that of <https://wiki.ros.org/urdf/XML>, and where it leaves a choice, urdfdom's is taken unless the doc comments say
+//! otherwise; MJCF is that of <https://mujoco.readthedocs.io/en/stable/XMLreference.html>, as far as it describes bodies and joints.
 //!
 //! ```
-//! use springpot::model::urdf::{Urdf, UrdfOptions};
+//! use springpot::model::description::{DescriptionOptions, RobotDescription};
 //!
 //! let text = r#"<robot name="pendulum">
 //!   <link name="stand"/>
@@ -22,45 +22,42 @@
 //!     <axis xyz="0 1 0"/>
 //!   </joint>
 //! </robot>"#;
-//! let urdf = Urdf::parse(text, None, &UrdfOptions::default())?;
-//! assert_eq!(urdf.root.name, "stand");
-//! let model = urdf.model([0.0, 0.0, -9.81])?;
+//! let robot = RobotDescription::parse(text, None, &DescriptionOptions::default())?;
+//! assert_eq!(robot.root.name, "stand");
+//! let model = robot.model([0.0, 0.0, -9.81])?;
 //! assert_eq!(model.joint_names(), ["pivot"]);
-//! # Ok::<(), springpot::model::urdf::UrdfError>(())
+//! # Ok::<(), springpot::model::description::DescriptionError>(())
 //! ```
 
 mod error;
-mod joint;
-mod limit;
-mod link;
-mod mimic;
+mod inertial;
+mod mjcf;
 mod package;
 mod problem;
-mod reader;
-mod robot;
 mod source;
-mod tree;
+mod urdf;
 mod visual;
 mod warning;
 
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-pub use error::UrdfError;
-pub use link::Inertial;
+pub use error::DescriptionError;
+pub use inertial::Inertial;
 pub use package::MeshPlace;
-pub use problem::{Owner, UrdfProblem};
+pub use problem::{DescriptionProblem, Owner};
 pub use visual::{Visual, VisualShape};
-pub use warning::{UrdfPlace, UrdfWarning, UrdfWarningKind};
+pub use warning::{DescriptionPlace, DescriptionWarning, DescriptionWarningKind};
 
 use super::{BodySpec, Field, JointKind, Model, ModelBuilder, ModelError, Parent};
+use source::Source;
 
 /// Name of the joint that lets the base float.
 pub const FLOATING_BASE: &str = "floating_base";
 
-/// How a URDF file is read.
+/// How a file is read.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct UrdfOptions {
+pub struct DescriptionOptions {
     /// Whether the root link hangs on a floating joint called [`FLOATING_BASE`] instead of being the world.
     pub floating_base: bool,
     /// Whether mimic joints have a coordinate of their own; a warning lists them.
@@ -82,7 +79,7 @@ pub struct RootLink {
     pub line: usize,
     /// Its mass and inertia, if it has some; on a fixed base they have no part in the dynamics.
     pub inertial: Option<Inertial>,
-    /// What it looks like where it does not move; of a floating base that stands in [`Urdf::visuals`].
+    /// What it looks like where it does not move; of a floating base that stands in [`RobotDescription::visuals`].
     pub visuals: Vec<Visual>,
 }
 
@@ -95,9 +92,9 @@ pub struct BodyLines {
     pub joint: usize,
 }
 
-/// A robot as a URDF file describes it.
+/// A robot as a file describes it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Urdf {
+pub struct RobotDescription {
     /// Name of the robot; empty, with a warning, where it has none.
     pub name: String,
     /// The file that was read, as it was given.
@@ -118,14 +115,48 @@ pub struct Urdf {
     pub lines: Vec<BodyLines>,
     /// What the bodies look like, as far as that can be read.
     pub visuals: Vec<Vec<Visual>>,
+    /// Which format it has.
+    pub format: Format,
+    /// Gravity in the axes of the world, m/s², where the file tells it, as MJCF can.
+    pub gravity: Option<[f64; 3]>,
+    /// Springs of joints, of MJCF.
+    pub springs: Vec<JointSpring>,
+    /// Where the file places what moves, of MJCF: joints and their coordinates, in the order of the bodies, where these are not 0; of those that float
+    /// x y z qx qy qz qw.
+    pub start: Vec<(String, Vec<f64>)>,
     /// What was not used or was assumed, by kind, the weightiest first.
-    pub warnings: Vec<UrdfWarning>,
+    pub warnings: Vec<DescriptionWarning>,
 }
 
-impl Urdf {
+/// A format of files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// `<robot>`.
+    Urdf,
+    /// `<mujoco>`.
+    Mjcf,
+}
+
+/// A spring of a joint of one coordinate: the force −stiffness·(q − slack) along it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointSpring {
+    /// Name of the joint.
+    pub joint: String,
+    /// N·m/rad or N/m, above 0.
+    pub stiffness: f64,
+    /// The coordinate at which it is slack, rad or m.
+    pub slack: f64,
+}
+
+impl RobotDescription {
+    /// Whether it was read from MJCF.
+    pub fn is_mjcf(&self) -> bool {
+        self.format == Format::Mjcf
+    }
+
     /// Reads a file.
     ///
-    /// `<visual>`, `<collision>` and `<material>` have no part in the dynamics; shapes of `<visual>` that can be read are in [`Urdf::visuals`]. Mesh files that are not found, whatever
+    /// `<visual>`, `<collision>` and `<material>` have no part in the dynamics; shapes of `<visual>` that can be read are in [`RobotDescription::visuals`]. Mesh files that are not found, whatever
     /// else is not used, massless links on moving joints, and single links whose inertia breaks the triangle inequality
     /// are warnings.
     ///
@@ -135,24 +166,34 @@ impl Urdf {
     /// floating; numbers that are missing, too few, too many or not finite (limits may be `inf`); negative mass, damping
     /// or friction; on a moving joint, a principal moment below −1e-12 of the largest that is not accepted; the axis 0 0 0; mimic joints that
     /// follow no joint of one degree, or one another; xacro. Each names the link or joint and has its line.
-    pub fn read(path: &Path, options: &UrdfOptions) -> Result<Self, UrdfError> {
-        robot::read(&Self::read_text(path)?, Some(path), options)
+    pub fn read(path: &Path, options: &DescriptionOptions) -> Result<Self, DescriptionError> {
+        Self::parse(&Self::read_text(path)?, Some(path), options)
     }
 
-    /// The text of a file, for [`Urdf::parse`].
+    /// The text of a file, for [`RobotDescription::parse`].
     ///
     /// # Errors
     /// A file that cannot be read, is too long or is no UTF-8.
-    pub fn read_text(path: &Path) -> Result<String, UrdfError> {
+    pub fn read_text(path: &Path) -> Result<String, DescriptionError> {
         source::read(path)
     }
 
-    /// As [`Urdf::read`], from text. Mesh files are looked for from `file`, and not at all without it.
+    /// As [`RobotDescription::read`], from text. Mesh files are looked for from `file`, and not at all without it.
     ///
     /// # Errors
-    /// As [`Urdf::read`].
-    pub fn parse(text: &str, file: Option<&Path>, options: &UrdfOptions) -> Result<Self, UrdfError> {
-        robot::read(text, file, options)
+    /// As [`RobotDescription::read`].
+    pub fn parse(text: &str, file: Option<&Path>, options: &DescriptionOptions) -> Result<Self, DescriptionError> {
+        let source = Source::new(text, file);
+        let document = source.parse()?;
+        let root = document.root_element();
+        match root.tag_name().name() {
+            "robot" => urdf::read(&source, root, options),
+            "mujoco" => mjcf::read(&source, root, options),
+            other => {
+                let root_name = other.chars().take(40).collect();
+                Err(source.fail(root.range().start, DescriptionProblem::NoRobot { root: root_name }))
+            }
+        }
     }
 
     /// The robot in the uniform field `gravity`, m/s², axes of the root link on a fixed base and of the world on a
@@ -161,13 +202,13 @@ impl Urdf {
     /// The root link of a fixed base becomes a name of the world.
     ///
     /// # Errors
-    /// [`UrdfProblem::NothingMoves`], and [`UrdfProblem::Model`]: a link that moves which is not physical together with
+    /// [`DescriptionProblem::NothingMoves`], and [`DescriptionProblem::Model`]: a link that moves which is not physical together with
     /// what is fixed to it and not accepted; a mass matrix that is singular in every configuration or, where a negative moment
     /// was accepted, not positive in a generic one; gravity not finite; overflow.
-    pub fn model(&self, gravity: [f64; 3]) -> Result<Model, UrdfError> {
+    pub fn model(&self, gravity: [f64; 3]) -> Result<Model, DescriptionError> {
         if self.bodies.is_empty() {
-            let problem = UrdfProblem::NothingMoves { link: self.root.name.clone() };
-            return Err(UrdfError::new(self.file.as_deref(), Some((self.root.line, 1)), problem));
+            let problem = DescriptionProblem::NothingMoves { link: self.root.name.clone() };
+            return Err(DescriptionError::new(self.file.as_deref(), Some((self.root.line, 1)), problem));
         }
         let mut builder = ModelBuilder::of_urdf(gravity);
         if !self.floating_base {
@@ -194,12 +235,12 @@ impl Urdf {
     }
 
     /// The error with the place of the body that it is about.
-    fn blame(&self, source: ModelError) -> UrdfError {
+    fn blame(&self, source: ModelError) -> DescriptionError {
         let place = source.subject().and_then(|subject| {
             let lines = self.lines.get(subject.body)?;
             Some(if is_of_link(subject.field) { lines.link } else { lines.joint })
         });
-        UrdfError::new(self.file.as_deref(), place.map(|line| (line, 1)), UrdfProblem::Model { source })
+        DescriptionError::new(self.file.as_deref(), place.map(|line| (line, 1)), DescriptionProblem::Model { source })
     }
 }
 

@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use super::error::UrdfError;
+use super::error::DescriptionError;
 use super::joint::JointEntry;
-use super::problem::UrdfProblem;
+use super::problem::DescriptionProblem;
 use super::reader::Reader;
 use crate::model::spec::Mimic;
 use crate::names::nearest;
@@ -13,7 +13,7 @@ use crate::names::nearest;
 const NAMED: usize = 20;
 
 /// Checks that every mimic joint follows a joint of one degree, and in the end one with a coordinate of its own.
-pub(super) fn check<'a>(reader: &Reader<'a>, joints: &[JointEntry<'a>]) -> Result<(), UrdfError> {
+pub(super) fn check<'a>(reader: &Reader<'a>, joints: &[JointEntry<'a>]) -> Result<(), DescriptionError> {
     if joints.iter().all(|joint| joint.mimic.is_none()) {
         return Ok(());
     }
@@ -25,12 +25,12 @@ pub(super) fn check<'a>(reader: &Reader<'a>, joints: &[JointEntry<'a>]) -> Resul
         let Some(&followed) = lookup.get(target.as_str()) else {
             let others = joints.iter().map(|other| &*other.spec.name).filter(|other| *other != joint);
             let suggestion = nearest(&target, others).map(str::to_owned);
-            return Err(reader.fail(node, UrdfProblem::UnknownMimic { joint, target, suggestion }));
+            return Err(reader.fail(node, DescriptionProblem::UnknownMimic { joint, target, suggestion }));
         };
         let kind = joints[followed].spec.kind;
         if kind.nv() != 1 {
             let culprit = target.clone();
-            return Err(reader.fail(node, UrdfProblem::MimicOfManyDegrees { joint, target, culprit, kind }));
+            return Err(reader.fail(node, DescriptionProblem::MimicOfManyDegrees { joint, target, culprit, kind }));
         }
         follows[index] = Some(followed);
     }
@@ -52,7 +52,7 @@ pub(super) fn check<'a>(reader: &Reader<'a>, joints: &[JointEntry<'a>]) -> Resul
             }
             let names = circle.iter().take(NAMED).map(|&joint| joints[joint].spec.name.clone()).collect();
             let node = joints[at].mimic.unwrap_or(joints[at].node);
-            return Err(reader.fail(node, UrdfProblem::MimicCycle { joints: names }));
+            return Err(reader.fail(node, DescriptionProblem::MimicCycle { joints: names }));
         }
     }
     Ok(())

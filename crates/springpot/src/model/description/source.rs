@@ -6,8 +6,8 @@ use std::path::Path;
 
 use roxmltree::{Document, Error as XmlError};
 
-use super::error::UrdfError;
-use super::problem::UrdfProblem;
+use super::error::DescriptionError;
+use super::problem::DescriptionProblem;
 
 /// Longest text, bytes. A robot of 10⁵ links takes some 60 MB.
 const MAX_BYTES: usize = 256 << 20;
@@ -57,21 +57,22 @@ impl<'a> Source<'a> {
     }
 
     /// An error at byte `at`.
-    pub(super) fn fail(&self, at: usize, problem: UrdfProblem) -> UrdfError {
-        UrdfError::new(self.file, Some(self.place(at)), problem)
+    pub(super) fn fail(&self, at: usize, problem: DescriptionProblem) -> DescriptionError {
+        DescriptionError::new(self.file, Some(self.place(at)), problem)
     }
 
     /// The tree of the XML.
     ///
     /// Entities beyond the five of XML are refused, and so is what would take the parser more than linear time or
     /// memory.
-    pub(super) fn parse(&self) -> Result<Document<'a>, UrdfError> {
+    pub(super) fn parse(&self) -> Result<Document<'a>, DescriptionError> {
         self.check_size()?;
         Document::parse(self.text).map_err(|error| self.not_xml(&error))
     }
 
-    fn check_size(&self) -> Result<(), UrdfError> {
-        let too_large = |limit, what| UrdfError::new(self.file, None, UrdfProblem::TooLarge { limit, what });
+    fn check_size(&self) -> Result<(), DescriptionError> {
+        let too_large =
+            |limit, what| DescriptionError::new(self.file, None, DescriptionProblem::TooLarge { limit, what });
         if self.text.len() > MAX_BYTES {
             return Err(too_large(MAX_BYTES, "bytes"));
         }
@@ -95,11 +96,11 @@ impl<'a> Source<'a> {
                 namespaces += tag.namespaces;
                 if namespaces > MAX_NAMESPACES {
                     let what = "declarations of namespaces";
-                    return Err(self.fail(at, UrdfProblem::TooLarge { limit: MAX_NAMESPACES, what }));
+                    return Err(self.fail(at, DescriptionProblem::TooLarge { limit: MAX_NAMESPACES, what }));
                 }
                 if tag.attributes > MAX_ATTRIBUTES_OF_TAG {
                     let what = "attributes in one tag";
-                    return Err(self.fail(at, UrdfProblem::TooLarge { limit: MAX_ATTRIBUTES_OF_TAG, what }));
+                    return Err(self.fail(at, DescriptionProblem::TooLarge { limit: MAX_ATTRIBUTES_OF_TAG, what }));
                 }
                 Some(tag.length)
             };
@@ -127,7 +128,7 @@ impl<'a> Source<'a> {
         self.text.len()
     }
 
-    fn not_xml(&self, error: &XmlError) -> UrdfError {
+    fn not_xml(&self, error: &XmlError) -> DescriptionError {
         let at = error.pos();
         // The parser knows no place of these.
         let place = match error {
@@ -146,7 +147,11 @@ impl<'a> Source<'a> {
                 format!("the outermost element is never closed; the text ends on line {lines}")
             }
             XmlError::UnknownNamespace(prefix, _) if prefix == "xacro" => {
-                return UrdfError::new(self.file, place, UrdfProblem::Xacro { element: "xacro:…".to_owned() });
+                return DescriptionError::new(
+                    self.file,
+                    place,
+                    DescriptionProblem::Xacro { element: "xacro:…".to_owned() },
+                );
             }
             XmlError::UnknownNamespace(prefix, _) => {
                 format!("the prefix {prefix:?} is not declared (xmlns:{prefix}=\"…\" in <robot> would do)")
@@ -157,7 +162,7 @@ impl<'a> Source<'a> {
             XmlError::InvalidChar2(wanted, found, _) => format!("expected {wanted}, found {}", shown(*found)),
             _ => error.to_string().replace(&format!(" at {at}"), "").chars().take(MAX_REASON).collect(),
         };
-        UrdfError::new(self.file, place, UrdfProblem::NotXml { reason })
+        DescriptionError::new(self.file, place, DescriptionProblem::NotXml { reason })
     }
 }
 
@@ -206,23 +211,23 @@ impl Tag {
 }
 
 /// The text of a file.
-pub(super) fn read(path: &Path) -> Result<String, UrdfError> {
-    let fail = |problem| UrdfError::new(Some(path), None, problem);
-    let unreadable = |source| fail(UrdfProblem::Unreadable { source });
+pub(super) fn read(path: &Path) -> Result<String, DescriptionError> {
+    let fail = |problem| DescriptionError::new(Some(path), None, problem);
+    let unreadable = |source| fail(DescriptionProblem::Unreadable { source });
     // Looked at before it is opened: opening a pipe would wait for its other end.
     if !std::fs::metadata(path).map_err(unreadable)?.is_file() {
-        return Err(fail(UrdfProblem::NotAFile));
+        return Err(fail(DescriptionProblem::NotAFile));
     }
     let file = File::open(path).map_err(unreadable)?;
     let mut bytes = Vec::new();
     file.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(unreadable)?;
     if bytes.len() > MAX_BYTES {
-        return Err(fail(UrdfProblem::TooLarge { limit: MAX_BYTES, what: "bytes" }));
+        return Err(fail(DescriptionProblem::TooLarge { limit: MAX_BYTES, what: "bytes" }));
     }
     String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         let text = String::from_utf8_lossy(&error.as_bytes()[..valid]).into_owned();
-        Source::new(&text, Some(path)).fail(valid, UrdfProblem::NotUtf8)
+        Source::new(&text, Some(path)).fail(valid, DescriptionProblem::NotUtf8)
     })
 }
 

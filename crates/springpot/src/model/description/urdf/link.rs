@@ -1,8 +1,9 @@
 //! `<link>`: its inertia, and the files of its shapes.
 
-use super::error::UrdfError;
+use super::Inertial;
+use super::error::DescriptionError;
+use super::problem::DescriptionProblem;
 use super::problem::Owner;
-use super::problem::UrdfProblem;
 use super::reader::{Node, Reader};
 use crate::linalg::symmetric_eigenvalues;
 use crate::spatial::{Rotation, Symmetric3};
@@ -15,23 +16,6 @@ const TRIANGLE_TOLERANCE: f64 = 1e-9;
 /// A tensor that is not positive, with entries below this times the mass, m², is that of a point mass and rounding
 /// errors.
 const NOISE: f64 = 1e-15;
-
-/// Mass and inertia of a link, in the link's frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Inertial {
-    /// Mass, kg, 0 or more.
-    pub mass: f64,
-    /// Centre of mass in the link's frame, m.
-    pub com: [f64; 3],
-    /// Inertia tensor about the centre of mass in the axes of the link's frame, kg·m² (off-diagonals are tensor
-    /// components): R I Rᵀ of the file's tensor I and the rotation R of `<inertial><origin rpy>`.
-    pub inertia: [[f64; 3]; 3],
-}
-
-impl Inertial {
-    /// No mass.
-    pub(super) const ZERO: Self = Self { mass: 0.0, com: [0.0; 3], inertia: [[0.0; 3]; 3] };
-}
 
 /// A link as it stands in the file.
 #[derive(Debug)]
@@ -77,7 +61,7 @@ pub(super) struct Mesh<'a> {
 }
 
 /// Reads a `<link>`.
-pub(super) fn read<'a>(reader: &mut Reader<'a>, node: Node<'a>) -> Result<LinkEntry<'a>, UrdfError> {
+pub(super) fn read<'a>(reader: &mut Reader<'a>, node: Node<'a>) -> Result<LinkEntry<'a>, DescriptionError> {
     let name = reader.own_name(node, "link")?;
     let owner = Owner::Link(name.to_owned());
     reader.attributes(node, &owner, &["name"], &["type", "dont_collapse"]);
@@ -88,7 +72,7 @@ pub(super) fn read<'a>(reader: &mut Reader<'a>, node: Node<'a>) -> Result<LinkEn
             Some("inertial") => {
                 if let Some(first) = inertial.replace(child) {
                     let (element, first) = ("inertial".to_owned(), reader.line(first));
-                    return Err(reader.fail(child, UrdfProblem::DuplicateElement { owner, element, first }));
+                    return Err(reader.fail(child, DescriptionProblem::DuplicateElement { owner, element, first }));
                 }
             }
             Some("visual" | "collision") => {
@@ -108,10 +92,14 @@ pub(super) fn read<'a>(reader: &mut Reader<'a>, node: Node<'a>) -> Result<LinkEn
     Ok(LinkEntry { name, node, inertial, meshes })
 }
 
-fn read_inertial<'a>(reader: &mut Reader<'a>, node: Node<'a>, owner: &Owner) -> Result<InertialEntry<'a>, UrdfError> {
+fn read_inertial<'a>(
+    reader: &mut Reader<'a>,
+    node: Node<'a>,
+    owner: &Owner,
+) -> Result<InertialEntry<'a>, DescriptionError> {
     let [origin, mass, inertia] = reader.children(node, owner, ["origin", "mass", "inertia"], &[])?;
     reader.attributes(node, owner, &[], &[]);
-    let missing = |element| reader.fail(node, UrdfProblem::MissingElement { owner: owner.clone(), element });
+    let missing = |element| reader.fail(node, DescriptionProblem::MissingElement { owner: owner.clone(), element });
     let mass_node = mass.ok_or_else(|| missing("mass"))?;
     let inertia_node = inertia.ok_or_else(|| missing("inertia"))?;
 

@@ -3,11 +3,11 @@
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-use super::error::UrdfError;
+use super::error::DescriptionError;
 use super::joint::JointEntry;
 use super::link::LinkEntry;
+use super::problem::DescriptionProblem;
 use super::problem::Owner;
-use super::problem::UrdfProblem;
 use super::reader::Reader;
 use crate::names::nearest;
 
@@ -37,14 +37,14 @@ impl Tree {
         reader: &Reader<'a>,
         links: &[LinkEntry<'a>],
         joints: &[JointEntry<'a>],
-    ) -> Result<Self, UrdfError> {
+    ) -> Result<Self, DescriptionError> {
         let branches = branches(reader, links, joints)?;
         let mut joint_of_link: Vec<Option<usize>> = vec![None; links.len()];
         for (joint, branch) in branches.iter().enumerate() {
             if let Some(first) = joint_of_link[branch.child].replace(joint) {
                 let name = |joint: usize| joints[joint].spec.name.clone();
                 let (link, line) = (links[branch.child].name.to_owned(), reader.line(joints[first].node));
-                let problem = UrdfProblem::TwoParents { link, first: name(first), line, second: name(joint) };
+                let problem = DescriptionProblem::TwoParents { link, first: name(first), line, second: name(joint) };
                 return Err(reader.fail(joints[joint].child.0, problem));
             }
         }
@@ -54,7 +54,7 @@ impl Tree {
                 return Err(circle(reader, links, joints, &branches, &joint_of_link, 0));
             };
             let names = roots.iter().map(|&link| links[link].name.to_owned()).collect();
-            return Err(reader.fail(links[*second].node, UrdfProblem::SeveralRoots { roots: names }));
+            return Err(reader.fail(links[*second].node, DescriptionProblem::SeveralRoots { roots: names }));
         };
 
         let mut children: Vec<Vec<usize>> = vec![Vec::new(); links.len()];
@@ -83,14 +83,14 @@ fn branches<'a>(
     reader: &Reader<'a>,
     links: &[LinkEntry<'a>],
     joints: &[JointEntry<'a>],
-) -> Result<Vec<Branch>, UrdfError> {
+) -> Result<Vec<Branch>, DescriptionError> {
     let mut link_lookup: HashMap<&str, usize> = HashMap::with_capacity(links.len());
     for (index, link) in links.iter().enumerate() {
         match link_lookup.entry(link.name) {
             Entry::Vacant(entry) => entry.insert(index),
             Entry::Occupied(entry) => {
                 let (owner, first) = (Owner::Link(link.name.to_owned()), reader.line(links[*entry.get()].node));
-                return Err(reader.fail(link.node, UrdfProblem::DuplicateName { owner, first }));
+                return Err(reader.fail(link.node, DescriptionProblem::DuplicateName { owner, first }));
             }
         };
     }
@@ -102,19 +102,19 @@ fn branches<'a>(
             Entry::Vacant(entry) => entry.insert(index),
             Entry::Occupied(entry) => {
                 let (owner, first) = (Owner::Joint(name.clone()), reader.line(joints[*entry.get()].node));
-                return Err(reader.fail(joint.node, UrdfProblem::DuplicateName { owner, first }));
+                return Err(reader.fail(joint.node, DescriptionProblem::DuplicateName { owner, first }));
             }
         };
         let end = |(node, link), element| {
             link_lookup.get(link).copied().ok_or_else(|| {
                 let suggestion = nearest(link, links.iter().map(|link| link.name)).map(str::to_owned);
                 let (joint, link) = (name.clone(), link.to_owned());
-                reader.fail(node, UrdfProblem::UnknownLink { joint, element, link, suggestion })
+                reader.fail(node, DescriptionProblem::UnknownLink { joint, element, link, suggestion })
             })
         };
         let (parent, child) = (end(joint.parent, "parent")?, end(joint.child, "child")?);
         if parent == child {
-            let problem = UrdfProblem::JoinsItself { joint: name.clone(), link: links[parent].name.to_owned() };
+            let problem = DescriptionProblem::JoinsItself { joint: name.clone(), link: links[parent].name.to_owned() };
             return Err(reader.fail(joint.node, problem));
         }
         branches.push(Branch { joint: index, parent, child });
@@ -130,7 +130,7 @@ fn circle<'a>(
     branches: &[Branch],
     joint_of_link: &[Option<usize>],
     start: usize,
-) -> UrdfError {
+) -> DescriptionError {
     let parent = |link: usize| joint_of_link[link].map_or(link, |joint| branches[joint].parent);
     // As many steps up as there are links end inside the circle.
     let inside = (0..links.len()).fold(start, |link, _| parent(link));
@@ -146,5 +146,5 @@ fn circle<'a>(
     circle.rotate_left(first);
     let names = circle.iter().take(NAMED).map(|&link| links[link].name.to_owned()).collect();
     let node = joint_of_link[circle[0]].map_or(links[circle[0]].node, |joint| joints[joint].node);
-    reader.fail(node, UrdfProblem::Cycle { links: names })
+    reader.fail(node, DescriptionProblem::Cycle { links: names })
 }

@@ -1,11 +1,11 @@
 //! `<joint>`: what it joins, how it moves.
 
-use super::error::UrdfError;
+use super::error::DescriptionError;
 use super::limit;
 use super::problem::Owner;
-use super::problem::{TYPES, UrdfProblem, brief};
+use super::problem::{DescriptionProblem, TYPES, brief};
 use super::reader::{Node, Reader};
-use super::warning::UrdfWarningKind;
+use super::warning::DescriptionWarningKind;
 use crate::model::kind::JointKind;
 use crate::model::spec::{JointSpec, Mimic};
 use crate::names::nearest;
@@ -31,7 +31,7 @@ pub(super) fn read<'a>(
     reader: &mut Reader<'a>,
     node: Node<'a>,
     ignore_mimic: bool,
-) -> Result<JointEntry<'a>, UrdfError> {
+) -> Result<JointEntry<'a>, DescriptionError> {
     let name = reader.own_name(node, "joint")?;
     let owner = Owner::Joint(name.to_owned());
     reader.attributes(node, &owner, &["name", "type"], &["dont_collapse"]);
@@ -51,9 +51,8 @@ pub(super) fn read<'a>(
         if let Some(mimic) = mimic.filter(|_| !ignore_mimic && kind.nv() > 1 && kind != JointKind::Floating) {
             let target = read_mimic(reader, mimic, &owner)?.joint;
             let joint = name.to_owned();
-            return Err(
-                reader.fail(mimic, UrdfProblem::MimicOfManyDegrees { culprit: joint.clone(), joint, target, kind })
-            );
+            return Err(reader
+                .fail(mimic, DescriptionProblem::MimicOfManyDegrees { culprit: joint.clone(), joint, target, kind }));
         }
         let unused =
             [(axis.filter(|_| !kind.has_axis()), "axis"), (limit, "limit"), (dynamics, "dynamics"), (mimic, "mimic")];
@@ -61,7 +60,7 @@ pub(super) fn read<'a>(
             let Some(element) = element else { continue };
             if kind == JointKind::Floating {
                 let line = reader.line(element);
-                reader.warnings.add(UrdfWarningKind::OfFloatingJoint, &owner, line, format!("<{name}>"));
+                reader.warnings.add(DescriptionWarningKind::OfFloatingJoint, &owner, line, format!("<{name}>"));
             } else {
                 reader.not_used(element, &owner, &format!("<{name}> of {} joints", kind.name()));
             }
@@ -80,7 +79,7 @@ pub(super) fn read<'a>(
     if let Some(mimic) = mimic {
         let found = read_mimic(reader, mimic, &owner)?;
         if ignore_mimic {
-            reader.warnings.add(UrdfWarningKind::MimicIgnored, &owner, reader.line(mimic), "");
+            reader.warnings.add(DescriptionWarningKind::MimicIgnored, &owner, reader.line(mimic), "");
         } else {
             spec.mimic = Some(found);
         }
@@ -88,7 +87,12 @@ pub(super) fn read<'a>(
     Ok(JointEntry { node, parent, child, mimic: mimic.filter(|_| !ignore_mimic), spec })
 }
 
-fn read_kind<'a>(reader: &Reader<'a>, node: Node<'a>, name: &str, owner: &Owner) -> Result<JointKind, UrdfError> {
+fn read_kind<'a>(
+    reader: &Reader<'a>,
+    node: Node<'a>,
+    name: &str,
+    owner: &Owner,
+) -> Result<JointKind, DescriptionError> {
     let written = reader.required(node, owner, "type")?;
     // Gazebo's name of it.
     let own = if written == "ball" { JointKind::Spherical.name() } else { written };
@@ -99,10 +103,10 @@ fn read_kind<'a>(reader: &Reader<'a>, node: Node<'a>, name: &str, owner: &Owner)
     Err(reader.fail(
         node,
         if OTHER_TYPES.contains(&written) {
-            UrdfProblem::UnsupportedJointType { joint, kind }
+            DescriptionProblem::UnsupportedJointType { joint, kind }
         } else {
             let suggestion = nearest(written, TYPES.map(JointKind::name)).map(str::to_owned);
-            UrdfProblem::UnknownJointType { joint, kind, suggestion }
+            DescriptionProblem::UnknownJointType { joint, kind, suggestion }
         },
     ))
 }
@@ -114,9 +118,9 @@ fn read_end<'a>(
     end: Option<Node<'a>>,
     owner: &Owner,
     element: &'static str,
-) -> Result<(Node<'a>, &'a str), UrdfError> {
+) -> Result<(Node<'a>, &'a str), DescriptionError> {
     let Some(end) = end else {
-        return Err(reader.fail(joint, UrdfProblem::MissingElement { owner: owner.clone(), element }));
+        return Err(reader.fail(joint, DescriptionProblem::MissingElement { owner: owner.clone(), element }));
     };
     reader.leaf(end, owner, &["link"], &[])?;
     Ok((end, reader.required(end, owner, "link")?))
@@ -127,29 +131,34 @@ fn read_axis<'a>(
     joint: Node<'a>,
     axis: Option<Node<'a>>,
     owner: &Owner,
-) -> Result<[f64; 3], UrdfError> {
+) -> Result<[f64; 3], DescriptionError> {
     const DEFAULT: [f64; 3] = [1.0, 0.0, 0.0];
     let Some(axis) = axis else {
-        reader.warnings.add(UrdfWarningKind::NoAxis, owner, reader.line(joint), "");
+        reader.warnings.add(DescriptionWarningKind::NoAxis, owner, reader.line(joint), "");
         return Ok(DEFAULT);
     };
     reader.leaf(axis, owner, &["xyz"], &[])?;
     let Some(xyz) = reader.numbers(axis, owner, "xyz")? else {
-        reader.warnings.add(UrdfWarningKind::NoAxis, owner, reader.line(axis), "");
+        reader.warnings.add(DescriptionWarningKind::NoAxis, owner, reader.line(axis), "");
         return Ok(DEFAULT);
     };
     if xyz == [0.0; 3] {
         let joint = owner.name().unwrap_or_default().to_owned();
-        return Err(reader.fail(axis, UrdfProblem::ZeroAxis { joint }));
+        return Err(reader.fail(axis, DescriptionProblem::ZeroAxis { joint }));
     }
     let length = xyz[0].hypot(xyz[1]).hypot(xyz[2]);
     if (length - 1.0).abs() > 1e-3 {
-        reader.warnings.add(UrdfWarningKind::AxisLength, owner, reader.line(axis), format!("length {}", brief(length)));
+        reader.warnings.add(
+            DescriptionWarningKind::AxisLength,
+            owner,
+            reader.line(axis),
+            format!("length {}", brief(length)),
+        );
     }
     Ok(xyz)
 }
 
-fn read_mimic<'a>(reader: &mut Reader<'a>, node: Node<'a>, owner: &Owner) -> Result<Mimic, UrdfError> {
+fn read_mimic<'a>(reader: &mut Reader<'a>, node: Node<'a>, owner: &Owner) -> Result<Mimic, DescriptionError> {
     reader.leaf(node, owner, &["joint", "multiplier", "offset"], &[])?;
     Ok(Mimic {
         joint: reader.required(node, owner, "joint")?.to_owned(),

@@ -3,18 +3,21 @@
 use std::collections::HashSet;
 use std::path::Path;
 
-use super::error::UrdfError;
+use super::error::DescriptionError;
 use super::joint::JointEntry;
-use super::link::{Inertial, LinkEntry, Physical};
+use super::link::{LinkEntry, Physical};
 use super::package::{Found, Packages};
 use super::problem::Owner;
-use super::problem::{UrdfProblem, brief};
+use super::problem::{DescriptionProblem, brief};
 use super::reader::{Node, Reader};
 use super::source::Source;
 use super::tree::Tree;
-use super::visual::{self, Visual};
-use super::warning::UrdfWarningKind;
-use super::{BodyLines, FLOATING_BASE, RootLink, Urdf, UrdfOptions, joint, link, mimic};
+use super::visual;
+use super::warning::DescriptionWarningKind;
+use super::{
+    BodyLines, DescriptionOptions, FLOATING_BASE, Format, Inertial, RobotDescription, RootLink, joint, link, mimic,
+};
+use crate::model::description::visual::Visual;
 use crate::model::kind::JointKind;
 use crate::model::spec::{BodySpec, JointSpec, Parent};
 
@@ -26,19 +29,17 @@ const UNUSED: [&str; 6] = ["transmission", "gazebo", "ros2_control", "sensor", "
 /// Elements of other programs that join links or drive them, for which there is no place in a tree.
 const UNSUPPORTED: [&str; 4] = ["loop_joint", "linear_spring_damper", "linear_bushing_rpy", "ball_constraint"];
 
-/// Reads a whole file.
-pub(super) fn read(text: &str, file: Option<&Path>, options: &UrdfOptions) -> Result<Urdf, UrdfError> {
-    let source = Source::new(text, file);
-    let document = source.parse()?;
-    let robot = document.root_element();
-    let mut reader = Reader::new(&source, robot);
-    if robot.tag_name().name() != "robot" {
-        let root = robot.tag_name().name().chars().take(40).collect();
-        return Err(reader.fail(robot, UrdfProblem::NotUrdf { root }));
-    }
+/// Reads the `<robot>` of a file.
+pub(in crate::model::description) fn read(
+    source: &Source<'_>,
+    robot: Node<'_>,
+    options: &DescriptionOptions,
+) -> Result<RobotDescription, DescriptionError> {
+    let mut reader = Reader::new(source, robot);
+    let file = source.file;
     let (links, mut joints) = entries(&mut reader, robot, options)?;
     if links.is_empty() {
-        return Err(reader.fail(robot, UrdfProblem::NoLinks));
+        return Err(reader.fail(robot, DescriptionProblem::NoLinks));
     }
     let tree = Tree::of(&reader, &links, &joints)?;
     mimic::check(&reader, &joints)?;
@@ -53,8 +54,8 @@ pub(super) fn read(text: &str, file: Option<&Path>, options: &UrdfOptions) -> Re
             for mesh in &link.meshes {
                 let kind = match packages.find(mesh.file) {
                     Found::At(_) | Found::Elsewhere => continue,
-                    Found::Nowhere => UrdfWarningKind::MeshNotFound,
-                    Found::Outside => UrdfWarningKind::MeshOutside,
+                    Found::Nowhere => DescriptionWarningKind::MeshNotFound,
+                    Found::Outside => DescriptionWarningKind::MeshOutside,
                 };
                 reader.warnings.add(kind, &owner, mesh.line, mesh.file);
             }
@@ -64,14 +65,18 @@ pub(super) fn read(text: &str, file: Option<&Path>, options: &UrdfOptions) -> Re
     let looks = links.iter().map(|link| visual::read(&reader, link.node, &materials, packages.as_mut())).collect();
     let name = reader.text(robot, "name").unwrap_or_default().to_owned();
     if name.is_empty() {
-        reader.warnings.add(UrdfWarningKind::NoName, &Owner::Robot, reader.line(robot), "");
+        reader.warnings.add(DescriptionWarningKind::NoName, &Owner::Robot, reader.line(robot), "");
     }
     assemble(reader, name, links, looks, joints, &tree, options)
 }
 
 type Entries<'a> = (Vec<LinkEntry<'a>>, Vec<JointEntry<'a>>);
 
-fn entries<'a>(reader: &mut Reader<'a>, robot: Node<'a>, options: &UrdfOptions) -> Result<Entries<'a>, UrdfError> {
+fn entries<'a>(
+    reader: &mut Reader<'a>,
+    robot: Node<'a>,
+    options: &DescriptionOptions,
+) -> Result<Entries<'a>, DescriptionError> {
     let owner = Owner::Robot;
     reader.attributes(robot, &owner, &["name"], &["version"]);
     let (mut links, mut joints) = (Vec::new(), Vec::new());
@@ -89,7 +94,7 @@ fn entries<'a>(reader: &mut Reader<'a>, robot: Node<'a>, options: &UrdfOptions) 
             _ if node.is_element() => {
                 if UNSUPPORTED.contains(&node.tag_name().name()) {
                     let what = format!("<{}>", node.tag_name().name());
-                    return Err(reader.fail(node, UrdfProblem::Unsupported { owner, what }));
+                    return Err(reader.fail(node, DescriptionProblem::Unsupported { owner, what }));
                 }
                 reader.unknown_element(node, &owner)?;
             }
@@ -114,14 +119,14 @@ fn note_simulator<'a>(reader: &mut Reader<'a>, gazebo: Node<'a>) {
         };
         if changes_motion {
             let what = format!("<{}>", node.tag_name().name());
-            reader.warnings.add(UrdfWarningKind::InSimulator, &Owner::Robot, reader.line(node), what);
+            reader.warnings.add(DescriptionWarningKind::InSimulator, &Owner::Robot, reader.line(node), what);
         }
     }
 }
 
-fn check_reserved<'a>(reader: &Reader<'a>, links: &[LinkEntry<'a>], root: usize) -> Result<(), UrdfError> {
+fn check_reserved<'a>(reader: &Reader<'a>, links: &[LinkEntry<'a>], root: usize) -> Result<(), DescriptionError> {
     match links.iter().position(|link| link.name == WORLD).filter(|&link| link != root) {
-        Some(world) => Err(reader.fail(links[world].node, UrdfProblem::ReservedLink)),
+        Some(world) => Err(reader.fail(links[world].node, DescriptionProblem::ReservedLink)),
         None => Ok(()),
     }
 }
@@ -137,16 +142,21 @@ fn floating_name<'a>(reader: &mut Reader<'a>, links: &[LinkEntry<'a>], root: usi
         free.push('_');
     }
     let owner = Owner::Link(WORLD.to_owned());
-    reader.warnings.add(UrdfWarningKind::Renamed, &owner, reader.line(link.node), format!("called {free:?} here"));
+    reader.warnings.add(
+        DescriptionWarningKind::Renamed,
+        &owner,
+        reader.line(link.node),
+        format!("called {free:?} here"),
+    );
     free
 }
 
 /// Keeps the name of the floating joint free: a fixed joint, which has no coordinates to be named, gets another one.
-fn free_the_name<'a>(reader: &mut Reader<'a>, joints: &mut [JointEntry<'a>]) -> Result<(), UrdfError> {
+fn free_the_name<'a>(reader: &mut Reader<'a>, joints: &mut [JointEntry<'a>]) -> Result<(), DescriptionError> {
     let Some(taken) = joints.iter().position(|joint| joint.spec.name == FLOATING_BASE) else { return Ok(()) };
     let node = joints[taken].node;
     if joints[taken].spec.kind != JointKind::Fixed {
-        return Err(reader.fail(node, UrdfProblem::ReservedJoint));
+        return Err(reader.fail(node, DescriptionProblem::ReservedJoint));
     }
     let names: HashSet<&str> = joints.iter().map(|joint| joint.spec.name.as_str()).collect();
     let mut free = format!("{FLOATING_BASE}_2");
@@ -154,7 +164,7 @@ fn free_the_name<'a>(reader: &mut Reader<'a>, joints: &mut [JointEntry<'a>]) -> 
         free.push('_');
     }
     let owner = Owner::Joint(FLOATING_BASE.to_owned());
-    reader.warnings.add(UrdfWarningKind::Renamed, &owner, reader.line(node), format!("called {free:?} here"));
+    reader.warnings.add(DescriptionWarningKind::Renamed, &owner, reader.line(node), format!("called {free:?} here"));
     joints[taken].spec.name = free;
     Ok(())
 }
@@ -167,8 +177,8 @@ fn assemble<'a>(
     mut looks: Vec<Vec<Visual>>,
     mut joints: Vec<JointEntry<'a>>,
     tree: &Tree,
-    options: &UrdfOptions,
-) -> Result<Urdf, UrdfError> {
+    options: &DescriptionOptions,
+) -> Result<RobotDescription, DescriptionError> {
     let floats = options.floating_base;
     let lines: Vec<usize> = links.iter().map(|link| reader.line(link.node)).collect();
     let root = &links[tree.root];
@@ -208,7 +218,7 @@ fn assemble<'a>(
     };
     let file = reader.source.file.map(Path::to_path_buf);
     let warnings = reader.warnings.finish();
-    Ok(Urdf {
+    Ok(RobotDescription {
         name,
         file,
         root,
@@ -217,6 +227,10 @@ fn assemble<'a>(
         bodies,
         lines: body_lines,
         visuals,
+        format: Format::Urdf,
+        gravity: None,
+        springs: Vec::new(),
+        start: Vec::new(),
         warnings,
     })
 }
@@ -237,22 +251,22 @@ fn note_inertia<'a>(
     reader: &mut Reader<'a>,
     link: &LinkEntry<'a>,
     [is_carried, moves]: [bool; 2],
-    options: &UrdfOptions,
-) -> Result<(), UrdfError> {
+    options: &DescriptionOptions,
+) -> Result<(), DescriptionError> {
     let owner = Owner::Link(link.name.to_owned());
     let Some(inertial) = &link.inertial else {
         if is_carried {
-            reader.warnings.add(UrdfWarningKind::NoInertial, &owner, reader.line(link.node), "");
+            reader.warnings.add(DescriptionWarningKind::NoInertial, &owner, reader.line(link.node), "");
         }
         return Ok(());
     };
     let line = inertial.line;
     if is_carried && inertial.value.mass == 0.0 {
-        reader.warnings.add(UrdfWarningKind::ZeroMass, &owner, line, "");
+        reader.warnings.add(DescriptionWarningKind::ZeroMass, &owner, line, "");
     }
     match inertial.physical {
         Physical::NotPositive { smallest } if is_carried && !options.accept_inertia => {
-            let problem = UrdfProblem::InertiaNotPositive { link: link.name.to_owned(), smallest };
+            let problem = DescriptionProblem::InertiaNotPositive { link: link.name.to_owned(), smallest };
             return Err(reader.fail(inertial.node, problem));
         }
         Physical::NotPositive { smallest } => {
@@ -262,13 +276,13 @@ fn note_inertia<'a>(
                 (false, false) => ", fixed to the world",
             };
             let what = format!("{} kg*m^2{with}", brief(smallest));
-            reader.warnings.add(UrdfWarningKind::NotPositive, &owner, line, what);
+            reader.warnings.add(DescriptionWarningKind::NotPositive, &owner, line, what);
         }
         Physical::BrokenTriangle { largest, others } if moves => {
             let what = format!("moment {} above the sum {} of the other two", brief(largest), brief(others));
-            reader.warnings.add(UrdfWarningKind::TriangleInequality, &owner, line, what);
+            reader.warnings.add(DescriptionWarningKind::TriangleInequality, &owner, line, what);
         }
-        Physical::Noise => reader.warnings.add(UrdfWarningKind::PointMass, &owner, line, ""),
+        Physical::Noise => reader.warnings.add(DescriptionWarningKind::PointMass, &owner, line, ""),
         Physical::BrokenTriangle { .. } | Physical::Yes => {}
     }
     Ok(())

@@ -9,6 +9,14 @@ use std::fmt;
 pub enum Owner {
     /// The `<robot>` itself.
     Robot,
+    /// The `<mujoco>` itself.
+    Mujoco,
+    /// The body of that name, of MJCF.
+    Body(String),
+    /// The shape of that name, of MJCF.
+    Geom(String),
+    /// The mesh of that name, of MJCF.
+    Mesh(String),
     /// The link of that name.
     Link(String),
     /// The joint of that name.
@@ -16,11 +24,11 @@ pub enum Owner {
 }
 
 impl Owner {
-    /// The name of the link or joint.
+    /// The name of what has one.
     pub fn name(&self) -> Option<&str> {
         match self {
-            Self::Robot => None,
-            Self::Link(name) | Self::Joint(name) => Some(name),
+            Self::Robot | Self::Mujoco => None,
+            Self::Body(name) | Self::Geom(name) | Self::Mesh(name) | Self::Link(name) | Self::Joint(name) => Some(name),
         }
     }
 }
@@ -29,6 +37,10 @@ impl fmt::Display for Owner {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Robot => f.write_str("<robot>"),
+            Self::Mujoco => f.write_str("<mujoco>"),
+            Self::Body(name) => write!(f, "body {name:?}"),
+            Self::Geom(name) => write!(f, "geom {name:?}"),
+            Self::Mesh(name) => write!(f, "mesh {name:?}"),
             Self::Link(name) => write!(f, "link {name:?}"),
             Self::Joint(name) => write!(f, "joint {name:?}"),
         }
@@ -49,7 +61,7 @@ pub(super) const TYPES: [JointKind; 7] = [
 /// What is wrong with a URDF file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum UrdfProblem {
+pub enum DescriptionProblem {
     /// The operating system refused.
     #[error("cannot be read: {source}")]
     Unreadable {
@@ -77,8 +89,8 @@ pub enum UrdfProblem {
         reason: String,
     },
     /// XML of another kind.
-    #[error("the outermost element is <{root}>, not <robot>{}", root_help(root))]
-    NotUrdf {
+    #[error("the outermost element is <{root}>, neither <robot> (URDF) nor <mujoco> (MJCF){}", root_help(root))]
+    NoRobot {
         /// The outermost element.
         root: String,
     },
@@ -234,6 +246,14 @@ pub enum UrdfProblem {
         /// The element or attribute.
         what: String,
     },
+    /// Something of an MJCF file that is wrong, or not supported.
+    #[error("{owner} {why}")]
+    Refused {
+        /// Whose.
+        owner: Owner,
+        /// What is wrong with it.
+        why: String,
+    },
     /// A joint names a link that does not exist.
     #[error("the <{element}> of joint {joint:?} is link {link:?}, which does not exist{}", meant(suggestion))]
     UnknownLink {
@@ -326,9 +346,9 @@ pub enum UrdfProblem {
     },
 }
 
-impl UrdfProblem {
+impl DescriptionProblem {
     /// Whether it is an inertia that no distribution of mass has, which
-    /// [`UrdfOptions::accept_inertia`](super::UrdfOptions::accept_inertia) takes as it is.
+    /// [`DescriptionOptions::accept_inertia`](super::DescriptionOptions::accept_inertia) takes as it is.
     pub fn is_of_no_mass(&self) -> bool {
         match self {
             Self::InertiaNotPositive { .. } => true,
@@ -340,7 +360,7 @@ impl UrdfProblem {
 
 /// ` of link "a"`; nothing for the robot.
 fn of(owner: &Owner) -> String {
-    if *owner == Owner::Robot { String::new() } else { format!(" of {owner}") }
+    if owner.name().is_none() { String::new() } else { format!(" of {owner}") }
 }
 
 fn numbers(count: usize) -> String {
@@ -364,8 +384,7 @@ fn mimic_help(suggestion: &Option<String>) -> String {
 
 fn root_help(root: &str) -> &'static str {
     match root {
-        "sdf" => "; this is an SDF file, and only URDF is read",
-        "mujoco" => "; this is a MuJoCo file (MJCF), and only URDF is read",
+        "sdf" => "; this is an SDF file, which is not read",
         "Robot" | "ROBOT" => "; names are case-sensitive",
         _ => "",
     }

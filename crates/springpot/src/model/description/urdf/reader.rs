@@ -2,11 +2,11 @@
 
 use roxmltree::{Attribute, Node as XmlNode};
 
-use super::error::UrdfError;
+use super::error::DescriptionError;
+use super::problem::DescriptionProblem;
 use super::problem::Owner;
-use super::problem::UrdfProblem;
 use super::source::Source;
-use super::warning::{UrdfWarningKind, Warnings};
+use super::warning::{DescriptionWarningKind, Warnings};
 
 pub(super) type Node<'a> = XmlNode<'a, 'a>;
 
@@ -28,7 +28,7 @@ impl<'a> Reader<'a> {
         Self { source, warnings: Warnings::default(), namespace: robot.tag_name().namespace() }
     }
 
-    pub(super) fn fail(&self, node: Node<'a>, problem: UrdfProblem) -> UrdfError {
+    pub(super) fn fail(&self, node: Node<'a>, problem: DescriptionProblem) -> DescriptionError {
         self.source.fail(node.range().start, problem)
     }
 
@@ -54,26 +54,26 @@ impl<'a> Reader<'a> {
     ///
     /// # Errors
     /// Elements of xacro.
-    pub(super) fn unknown_element(&mut self, node: Node<'a>, owner: &Owner) -> Result<(), UrdfError> {
+    pub(super) fn unknown_element(&mut self, node: Node<'a>, owner: &Owner) -> Result<(), DescriptionError> {
         let element = self.written(node);
         let namespace = node.tag_name().namespace().unwrap_or("");
         if element.starts_with("xacro:") || namespace.contains("xacro") {
-            return Err(self.fail(node, UrdfProblem::Xacro { element }));
+            return Err(self.fail(node, DescriptionProblem::Xacro { element }));
         }
-        self.warnings.add(UrdfWarningKind::UnknownElement, owner, self.line(node), format!("<{element}>"));
+        self.warnings.add(DescriptionWarningKind::UnknownElement, owner, self.line(node), format!("<{element}>"));
         Ok(())
     }
 
     /// Notes a known element that has no part in the dynamics; `what` is what to call it.
     pub(super) fn not_used(&mut self, node: Node<'a>, owner: &Owner, what: &str) {
-        self.warnings.add(UrdfWarningKind::NotUsed, owner, self.line(node), what);
+        self.warnings.add(DescriptionWarningKind::NotUsed, owner, self.line(node), what);
     }
 
     /// Notes text that is not blank.
     pub(super) fn stray_text(&mut self, node: Node<'a>, owner: &Owner) {
         if node.is_text() && node.text().is_some_and(|text| !text.trim().is_empty()) {
             let parent = node.parent().map(|parent| parent.tag_name().name()).unwrap_or_default();
-            self.warnings.add(UrdfWarningKind::StrayText, owner, self.line(node), format!("in <{parent}>"));
+            self.warnings.add(DescriptionWarningKind::StrayText, owner, self.line(node), format!("in <{parent}>"));
         }
     }
 
@@ -85,14 +85,14 @@ impl<'a> Reader<'a> {
         owner: &Owner,
         wanted: [&'static str; N],
         unused: &[&str],
-    ) -> Result<[Option<Node<'a>>; N], UrdfError> {
+    ) -> Result<[Option<Node<'a>>; N], DescriptionError> {
         let mut found = [None; N];
         for node in parent.children() {
             let name = self.name(node);
             if let Some(k) = wanted.iter().position(|wanted| name == Some(wanted)) {
                 if let Some(first) = found[k].replace(node) {
                     let (owner, element, first) = (owner.clone(), wanted[k].to_owned(), self.line(first));
-                    return Err(self.fail(node, UrdfProblem::DuplicateElement { owner, element, first }));
+                    return Err(self.fail(node, DescriptionProblem::DuplicateElement { owner, element, first }));
                 }
             } else if let Some(name) = name.filter(|name| unused.contains(name)) {
                 self.not_used(node, owner, &format!("<{name}>"));
@@ -114,7 +114,8 @@ impl<'a> Reader<'a> {
                 continue;
             }
             let is_known = is_plain && unused.contains(&name);
-            let kind = if is_known { UrdfWarningKind::NotUsed } else { UrdfWarningKind::UnknownAttribute };
+            let kind =
+                if is_known { DescriptionWarningKind::NotUsed } else { DescriptionWarningKind::UnknownAttribute };
             let name: String = name.chars().take(SHOWN).collect();
             let what = format!("{name} of <{}>", node.tag_name().name());
             self.warnings.add(kind, owner, self.source.line(attribute.range().start), what);
@@ -128,7 +129,7 @@ impl<'a> Reader<'a> {
         owner: &Owner,
         used: &[&str],
         unused: &[&str],
-    ) -> Result<(), UrdfError> {
+    ) -> Result<(), DescriptionError> {
         self.attributes(node, owner, used, unused);
         self.children(node, owner, [], &[]).map(|[]| ())
     }
@@ -144,20 +145,20 @@ impl<'a> Reader<'a> {
         node: Node<'a>,
         owner: &Owner,
         attribute: &'static str,
-    ) -> Result<&'a str, UrdfError> {
+    ) -> Result<&'a str, DescriptionError> {
         self.text(node, attribute).ok_or_else(|| self.missing(node, owner, attribute))
     }
 
-    fn missing(&self, node: Node<'a>, owner: &Owner, attribute: &'static str) -> UrdfError {
+    fn missing(&self, node: Node<'a>, owner: &Owner, attribute: &'static str) -> DescriptionError {
         let (owner, element) = (owner.clone(), node.tag_name().name().to_owned());
-        self.fail(node, UrdfProblem::MissingAttribute { owner, element, attribute })
+        self.fail(node, DescriptionProblem::MissingAttribute { owner, element, attribute })
     }
 
     /// The name of a link or joint.
-    pub(super) fn own_name(&self, node: Node<'a>, element: &'static str) -> Result<&'a str, UrdfError> {
+    pub(super) fn own_name(&self, node: Node<'a>, element: &'static str) -> Result<&'a str, DescriptionError> {
         let name = self.required(node, &Owner::Robot, "name")?;
         if name.trim().is_empty() {
-            return Err(self.fail(node, UrdfProblem::EmptyName { element }));
+            return Err(self.fail(node, DescriptionProblem::EmptyName { element }));
         }
         Ok(name)
     }
@@ -168,7 +169,7 @@ impl<'a> Reader<'a> {
         node: Node<'a>,
         owner: &Owner,
         name: &'static str,
-    ) -> Result<Option<[f64; N]>, UrdfError> {
+    ) -> Result<Option<[f64; N]>, DescriptionError> {
         let Some(attribute) = attribute(node, name) else { return Ok(None) };
         let (owner, element) = (|| owner.clone(), || node.tag_name().name().to_owned());
         let at = attribute.range_value().start;
@@ -185,12 +186,14 @@ impl<'a> Reader<'a> {
             let Ok(value) = word.parse::<f64>() else {
                 // An expression with blanks in it is shown whole.
                 let text = if word.contains("${") { attribute.value().chars().take(SHOWN).collect() } else { shown() };
-                let problem = UrdfProblem::NotANumber { owner: owner(), element: element(), attribute: name, text };
+                let problem =
+                    DescriptionProblem::NotANumber { owner: owner(), element: element(), attribute: name, text };
                 return Err(self.source.fail(at, problem));
             };
             if !value.is_finite() {
                 let text = shown();
-                let problem = UrdfProblem::NotFinite { owner: owner(), element: element(), attribute: name, text };
+                let problem =
+                    DescriptionProblem::NotFinite { owner: owner(), element: element(), attribute: name, text };
                 return Err(self.source.fail(at, problem));
             }
             if let Some(place) = values.get_mut(given) {
@@ -200,19 +203,29 @@ impl<'a> Reader<'a> {
         }
         if given != N {
             let (owner, element) = (owner(), element());
-            let problem = UrdfProblem::WrongCount { owner, element, attribute: name, given, wanted: N };
+            let problem = DescriptionProblem::WrongCount { owner, element, attribute: name, given, wanted: N };
             return Err(self.source.fail(at, problem));
         }
         Ok(Some(values))
     }
 
     /// An attribute of one finite number.
-    pub(super) fn number(&self, node: Node<'a>, owner: &Owner, name: &'static str) -> Result<Option<f64>, UrdfError> {
+    pub(super) fn number(
+        &self,
+        node: Node<'a>,
+        owner: &Owner,
+        name: &'static str,
+    ) -> Result<Option<f64>, DescriptionError> {
         Ok(self.numbers(node, owner, name)?.map(|[value]| value))
     }
 
     /// An attribute of one finite number, which must be there.
-    pub(super) fn required_number(&self, node: Node<'a>, owner: &Owner, name: &'static str) -> Result<f64, UrdfError> {
+    pub(super) fn required_number(
+        &self,
+        node: Node<'a>,
+        owner: &Owner,
+        name: &'static str,
+    ) -> Result<f64, DescriptionError> {
         self.number(node, owner, name)?.ok_or_else(|| self.missing(node, owner, name))
     }
 
@@ -223,20 +236,24 @@ impl<'a> Reader<'a> {
         owner: &Owner,
         name: &'static str,
         value: f64,
-    ) -> Result<f64, UrdfError> {
+    ) -> Result<f64, DescriptionError> {
         if value < 0.0 {
             let (owner, element) = (owner.clone(), node.tag_name().name().to_owned());
-            return Err(self.fail(node, UrdfProblem::Negative { owner, element, attribute: name, value }));
+            return Err(self.fail(node, DescriptionProblem::Negative { owner, element, attribute: name, value }));
         }
         Ok(value)
     }
 
     /// Origin and roll, pitch, yaw of an `<origin>`; zeros where it or one of its attributes is not there.
-    pub(super) fn origin(&mut self, node: Option<Node<'a>>, owner: &Owner) -> Result<([f64; 3], [f64; 3]), UrdfError> {
+    pub(super) fn origin(
+        &mut self,
+        node: Option<Node<'a>>,
+        owner: &Owner,
+    ) -> Result<([f64; 3], [f64; 3]), DescriptionError> {
         let Some(node) = node else { return Ok(([0.0; 3], [0.0; 3])) };
         if self.text(node, "quat_xyzw").is_some() {
             let what = "quat_xyzw of <origin>".to_owned();
-            return Err(self.fail(node, UrdfProblem::Unsupported { owner: owner.clone(), what }));
+            return Err(self.fail(node, DescriptionProblem::Unsupported { owner: owner.clone(), what }));
         }
         self.leaf(node, owner, &["xyz", "rpy"], &[])?;
         let xyz = self.numbers(node, owner, "xyz")?.unwrap_or([0.0; 3]);
