@@ -185,8 +185,8 @@ fn labels_in_lines(font: &Font, labels: &[&str], width: f64) -> Vec<Vec<String>>
     if are_told_apart(&first) {
         return first;
     }
-    let others = (LINES..=MOST_LINES).map(|most| wrapped(most, wrap_to_end));
-    others.into_iter().find(are_told_apart).unwrap_or(first)
+    let mut others = (LINES..=MOST_LINES).map(|most| wrapped(most, wrap_to_end));
+    others.find(are_told_apart).unwrap_or(first)
 }
 
 fn entry_height(lines: &[String]) -> f64 {
