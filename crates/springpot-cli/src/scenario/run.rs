@@ -143,9 +143,10 @@ fn no_results(out: &Path, error: FolderError, goes_on: Option<bool>) -> Ending {
         FolderError::Pending { .. } => {
             (error.to_string(), Some(format!("to put them there once that can be: {}", to_go_on(out))), Ending::Failed)
         }
-        FolderError::File(_) if out.is_file() => {
+        FolderError::File(_) if out.exists() && !out.is_dir() => {
             let help = "name a folder with --out: the files of a run are written into it";
-            (format!("the results cannot be written to {folder}: it is a file"), Some(help.to_owned()), Ending::Failed)
+            let what = if out.is_file() { "a file" } else { "no folder" };
+            (format!("the results cannot be written to {folder}: it is {what}"), Some(help.to_owned()), Ending::Failed)
         }
         FolderError::File(_) if goes_on.is_some() && !out.is_dir() => {
             return no_results(out, FolderError::Removed(out.to_owned()), goes_on);

@@ -293,6 +293,35 @@ fn mistakes_name_the_line() {
 }
 
 #[test]
+fn what_no_number_holds_is_refused() {
+    let place = Place::new();
+    place.write("x.csv", "t,x\n0,0\n1e-250,2\n2e-250,3\n3e-250,5\n");
+    let arguments = ["derivative", "x.csv", "--column", "x", "--order", "0.5"];
+    place.springpot(&arguments).ends(2, &["x.csv:3: `D^0.5 x` is no finite number here"]);
+    place.write("x.csv", "t,x\n0,0\n1e-9,1e308\n2e-9,-1e308\n3e-9,1e308\n");
+    for scheme in ["spline", "exponential", "l1"] {
+        let arguments = [&arguments[..], &["--scheme", scheme]].concat();
+        let ended = place.springpot(&arguments);
+        ended.ends(2, &["x.csv:", "`D^0.5 x` is no finite number here", "in other units"]);
+        assert!(ended.stdout.is_empty(), "{scheme}: {}", ended.stdout);
+    }
+    // A jump from nothing is one without bound at the start.
+    place.write("x.csv", "t,x\n0,1\n1,2\n2,3\n");
+    let started = place.springpot(&[&arguments[..], &["--kind", "riemann-liouville"]].concat());
+    assert!(started.code == Some(0) && started.stdout.contains("\n0,1,\n"), "{}", started.stdout);
+}
+
+#[test]
+fn a_column_that_is_there_is_not_written_twice() {
+    let place = Place::new();
+    place.write("x.csv", "t,x,D^0.5 x,error of D^1 x\n0,1,0,0\n1,2,0,0\n2,3,0,0\n");
+    let run = |more: &[&str]| place.springpot(&[&["derivative", "x.csv", "--column", "x"], more].concat());
+    run(&["--order", "0.5"]).ends(2, &["x.csv: the file has a column `D^0.5 x` already", "name that column otherwise"]);
+    run(&["--order", "1", "--error"]).ends(2, &["the file has a column `error of D^1 x` already"]);
+    assert_eq!(run(&["--order", "1"]).code, Some(0));
+}
+
+#[test]
 fn a_file_is_refused_before_its_first_row_is_written() {
     let place = Place::new();
     let text = samples(3000, 0.003, f64::sin);

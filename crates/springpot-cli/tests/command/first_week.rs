@@ -54,6 +54,11 @@ fn a_file_is_no_folder_for_results() {
     let ended = place.springpot(&["run", "arm.toml", "--quiet", "--out", "arm.toml"]);
     assert_eq!(ended.code, Some(1));
     ended.says(&["the results cannot be written to arm.toml: it is a file", "name a folder with --out"]);
+    #[cfg(unix)]
+    {
+        let ended = place.springpot(&["run", "arm.toml", "--out", "/dev/null"]);
+        ended.says(&["the results cannot be written to /dev/null: it is no folder", "name a folder with --out"]);
+    }
     assert_eq!(place.read("arm.toml"), before);
 }
 

@@ -1,7 +1,8 @@
 //! The legend, beside the panels or below them.
 
 use super::axes::DOT;
-use crate::draw::{Align, Font, INK, Point, Scene, Stroke, Text, wrap};
+use crate::draw::{Align, Font, INK, Point, Scene, Stroke, Text, wrap, wrap_to_end};
+use std::collections::HashSet;
 
 /// Size of the legend's text, pixels.
 const SIZE: f64 = 12.0;
@@ -18,6 +19,9 @@ const BLANK: f64 = 8.0;
 /// Widest label; longer ones are wrapped.
 const WIDEST: f64 = 210.0;
 const MOST_ENTRIES: usize = 96;
+/// Lines of a label; of one that else looks like another, up to the latter.
+const LINES: usize = 2;
+const MOST_LINES: usize = 8;
 
 /// Entries that belong together.
 pub(super) struct Group<'a> {
@@ -162,10 +166,27 @@ impl Legend {
 /// The entries of a group, each in lines; of too many the first.
 fn entries(font: &Font, group: &Group<'_>, widest: f64) -> Vec<(Option<Stroke>, Vec<String>)> {
     let width = (widest - SAMPLE - BLANK).clamp(40.0, WIDEST);
-    let lines = |text: &str| wrap(font, text, SIZE, width, 2);
-    let shown = group.entries.iter().take(MOST_ENTRIES).map(|(label, stroke)| (Some(*stroke), lines(label)));
+    let labels: Vec<&str> = group.entries.iter().take(MOST_ENTRIES).map(|(label, _)| *label).collect();
+    let strokes = group.entries.iter().map(|(_, stroke)| Some(*stroke));
+    let shown = strokes.zip(labels_in_lines(font, &labels, width));
     let more = group.entries.len().checked_sub(MOST_ENTRIES + 1).map(|more| format!("… and {} more", more + 1));
     shown.chain(more.map(|more| (None, vec![more]))).collect()
+}
+
+/// Labels in lines no wider than `width`: long ones are cut at their ends, but where different ones would look alike then, before their ends, and
+/// where they still do, in more lines.
+fn labels_in_lines(font: &Font, labels: &[&str], width: f64) -> Vec<Vec<String>> {
+    let wrapped = |most: usize, wrap: fn(&Font, &str, f64, f64, usize) -> Vec<String>| -> Vec<Vec<String>> {
+        labels.iter().map(|label| wrap(font, label, SIZE, width, most)).collect()
+    };
+    let different = labels.iter().collect::<HashSet<_>>().len();
+    let are_told_apart = |lines: &Vec<Vec<String>>| lines.iter().collect::<HashSet<_>>().len() == different;
+    let first = wrapped(LINES, wrap);
+    if are_told_apart(&first) {
+        return first;
+    }
+    let mut others = (LINES..=MOST_LINES).map(|most| wrapped(most, wrap_to_end));
+    others.find(are_told_apart).unwrap_or(first)
 }
 
 fn entry_height(lines: &[String]) -> f64 {
@@ -178,4 +199,25 @@ fn entry_width(font: &Font, lines: &[String]) -> f64 {
 
 fn widest(font: &Font, lines: &[String]) -> f64 {
     lines.iter().map(|line| font.width(line, SIZE)).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_labels_that_differ_look_different() {
+        let font = Font::load().unwrap();
+        let long = "a_very_long_name_of_an_element_between_the_upper_arm_and_the_forearm_of_the_robot_on_the";
+        let (left, right) = (format!("{long}_left"), format!("{long}_right"));
+        let within = [format!("{long}_1_{long}_{long}"), format!("{long}_2_{long}_{long}")];
+        for labels in [[&left, &right], [&within[0], &within[1]]] {
+            let lines = labels_in_lines(&font, &labels.map(String::as_str), WIDEST);
+            assert!(lines[0] != lines[1], "{lines:?}");
+            assert!(lines.iter().flatten().all(|line| font.width(line, SIZE) <= WIDEST), "{lines:?}");
+        }
+        // One alone, and the same twice, are cut at their ends.
+        let lines = labels_in_lines(&font, &[&left, &left, "short"], WIDEST);
+        assert!(lines[0].len() == LINES && lines[0][1].ends_with('…') && lines[1] == lines[0] && lines[2] == ["short"]);
+    }
 }

@@ -30,8 +30,22 @@ const OKABE_ITO: [Color; 6] = [
 ];
 
 /// Solid first, then dashes, so that a curve hidden by another still shows through its gaps.
-const DASHES: [&[f64]; 6] =
-    [&[], &[7.0, 3.0], &[7.0, 2.5, 1.6, 2.5], &[2.0, 2.2], &[12.0, 3.0], &[10.0, 2.0, 1.6, 2.0, 1.6, 2.0]];
+const DASHES: [&[f64]; 12] = [
+    &[],
+    &[7.0, 3.0],
+    &[7.0, 2.5, 1.6, 2.5],
+    &[2.0, 2.2],
+    &[12.0, 3.0],
+    &[10.0, 2.0, 1.6, 2.0, 1.6, 2.0],
+    &[4.0, 2.0],
+    &[12.0, 2.5, 4.0, 2.5],
+    &[7.0, 2.0, 7.0, 2.0, 1.6, 2.0],
+    &[4.0, 6.0],
+    &[10.0, 2.0, 1.6, 2.0, 1.6, 2.0, 1.6, 2.0],
+    &[16.0, 5.0],
+];
+/// Kinds beyond the dashes are told apart by how much wider they are, each turn of the dashes by so much.
+const WIDER: f64 = 0.7;
 /// Of them, those that labels without kinds are told apart by.
 const PLAIN: usize = 4;
 /// Colours that are told apart without dashes.
@@ -49,7 +63,7 @@ pub(super) fn strokes(labels: &[&str], kinds: usize) -> Vec<Vec<Stroke>> {
         // Beside kinds the dash is taken, so that many labels need as many colours.
         let color = if ordered || (kinds > 1 && count > FEW) { plasma(i as f64 / last) } else { OKABE_ITO[i % FEW] };
         let dash = match (kinds > 1, ordered) {
-            (true, _) => DASHES[kind % DASHES.len()],
+            (true, _) => return of_kind(color, width, kind),
             (false, true) if count > FEW => DASHES[i % PLAIN],
             (false, true) => DASHES[0],
             // Colours and dashes advance together; after a full turn of colours the dashes shift.
@@ -62,7 +76,11 @@ pub(super) fn strokes(labels: &[&str], kinds: usize) -> Vec<Vec<Stroke>> {
 
 /// What stands for a kind in the legend, whatever the label.
 pub(super) fn dash(kind: usize) -> Stroke {
-    Stroke::new(INK, 1.4).dashed(DASHES[kind % DASHES.len()])
+    of_kind(INK, 1.4, kind)
+}
+
+fn of_kind(color: Color, width: f64, kind: usize) -> Stroke {
+    Stroke::new(color, width + WIDER * (kind / DASHES.len()) as f64).dashed(DASHES[kind % DASHES.len()])
 }
 
 /// What points without lines are drawn in.
@@ -124,7 +142,7 @@ mod tests {
 
     #[test]
     fn strokes_differ() {
-        for (count, kinds) in [(2, 1), (6, 1), (24, 1), (3, 6), (10, 4)] {
+        for (count, kinds) in [(2, 1), (6, 1), (24, 1), (3, 6), (10, 4), (2, 7), (3, 12), (2, 40)] {
             let names: Vec<String> = (0..count).map(|i| format!("{}", char::from(b'a' + i))).collect();
             let names: Vec<&str> = names.iter().map(String::as_str).collect();
             let strokes = strokes(&names, kinds).concat();
@@ -146,5 +164,7 @@ mod tests {
         }
         assert!(all[0][0].color != all[1][0].color && all[0][1].dash == all[1][1].dash);
         assert_eq!(dash(1).dash, all[0][1].dash);
+        let kinds: Vec<Stroke> = (0..40).map(dash).collect();
+        assert!(kinds.iter().enumerate().all(|(i, kind)| !kinds[..i].contains(kind)));
     }
 }

@@ -12,7 +12,7 @@ mod wrap;
 pub(crate) use color::{Color, INK, PAPER};
 pub(crate) use font::Font;
 pub(crate) use scene::{Align, Outline, Point, Scene, Stroke, Text};
-pub(crate) use wrap::{wrap, wrap_evenly};
+pub(crate) use wrap::{wrap, wrap_evenly, wrap_to_end};
 
 use crate::{Rendered, ReportError};
 

@@ -44,6 +44,22 @@ pub(crate) fn wrap(font: &Font, text: &str, size: f64, width: f64, most: usize) 
     lines
 }
 
+/// As [`wrap`], but what does not fit is left out before the last line, which keeps the end of the text behind a "…".
+pub(crate) fn wrap_to_end(font: &Font, text: &str, size: f64, width: f64, most: usize) -> Vec<String> {
+    let mut lines = wrap(font, text, size, width, usize::MAX);
+    if lines.len() <= most {
+        return lines;
+    }
+    lines.truncate(most);
+    let text = text.trim_end();
+    let ends = text.char_indices().rev().map(|(start, _)| format!("…{}", &text[start..]));
+    let longest = ends.take_while(|end| font.width(end, size) <= width).last();
+    if let (Some(line), Some(end)) = (lines.last_mut(), longest) {
+        *line = end;
+    }
+    lines
+}
+
 /// As [`wrap`], in lines of about one length.
 pub(crate) fn wrap_evenly(font: &Font, text: &str, size: f64, width: f64, most: usize) -> Vec<String> {
     let whole = wrap(font, text, size, width, most);
@@ -135,6 +151,11 @@ mod tests {
         assert!(lines[1].ends_with('…') && font.width(&lines[1], 10.0) <= 100.0);
         let lines = wrap(&font, "strut_between_world_and_forearm", 10.0, font.width("strut_between_world_an", 10.0), 3);
         assert_eq!(lines, ["strut_between_world_", "and_forearm"]);
+        let (one, other) = (format!("{word}_left"), format!("{word}_right"));
+        let ends = [&one, &other].map(|text| wrap_to_end(&font, text, 10.0, 100.0, 2));
+        assert!(ends.iter().flatten().all(|line| font.width(line, 10.0) <= 100.0) && ends[0].len() == 2);
+        assert!(ends[0][1].starts_with('…') && ends[0][1].ends_with("m_left") && ends[1][1].ends_with("m_right"));
+        assert_eq!(wrap_to_end(&font, "short one", 10.0, 100.0, 2), ["short one"]);
         assert_eq!(wrap(&font, "", 10.0, 100.0, 2), [""]);
         assert_eq!(wrap(&font, "a\nb\tc", 10.0, 100.0, 2), ["a b c"]);
         assert_eq!(wrap(&font, "ab", 10.0, 0.0, 3), ["a", "b"]);

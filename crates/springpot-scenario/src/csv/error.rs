@@ -26,7 +26,7 @@ pub enum CsvProblem {
     #[error("not a regular file")]
     NotAFile,
     /// Nothing in it.
-    #[error("the file is empty; a header row and at least two rows of numbers are needed")]
+    #[error("the file is empty; a header row and rows of numbers are needed")]
     Empty,
     /// The first row holds numbers.
     #[error("the first row must name the columns, but it starts with the number {first}")]

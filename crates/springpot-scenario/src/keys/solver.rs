@@ -87,7 +87,9 @@ pub(crate) static SOLVER: Keys = Keys {
         key(
             "first_step",
             Shape::Number("s", Bound::Positive),
-            Need::Said("max_step/64; forward: chosen by the run"),
+            Need::Said(
+                "max_step/64, less where rows come before its end or springpots in series begin with a jump; forward: chosen by the run",
+            ),
             "First inner step.",
         ),
         key(

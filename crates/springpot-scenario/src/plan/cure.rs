@@ -56,6 +56,10 @@ impl Plan {
                 let help = "look at its frequency (rad/s in an expression of t): is it what was meant?";
                 (self.busy(what), Some(help.to_owned()))
             }
+            RunError::TooShortSteps { .. } => {
+                let asked = self.settings.max_step.map(|_| "raise solver.max_step, or solver.max_steps");
+                (None, Some(asked.unwrap_or("raise solver.max_steps").to_owned()))
+            }
             RunError::ControlChatter { signal, .. } => match signal {
                 Some(signal) => (self.said(signal).map(|(place, _)| place), None),
                 None => (self.motion.place_of_controller().cloned(), None),

@@ -285,6 +285,16 @@ pub enum RunError {
         /// The limit.
         limit: u64,
     },
+    /// The longest steps that the run may take are too many.
+    #[error("steps are at most {} s long, so that the run takes {}, and {limit} are allowed", seconds(*longest), at_least(*.times))]
+    TooShortSteps {
+        /// The longest step, s.
+        longest: f64,
+        /// Steps that it takes at least.
+        times: f64,
+        /// The limit.
+        limit: u64,
+    },
     /// Signals change more often than the run may take steps.
     #[error(
         "{what} changes too often: it takes {}, and {limit} are allowed; raise solver.max_steps or shorten the run",
@@ -467,7 +477,8 @@ impl RunError {
             | Self::Outside { t, .. } => Some(*t),
             Self::Kernel { .. } => Some(0.0),
             Self::Path(error) => Some(error.t()),
-            Self::TooBusy { .. }
+            Self::TooShortSteps { .. }
+            | Self::TooBusy { .. }
             | Self::SampleBetweenSteps { .. }
             | Self::Scheme { .. }
             | Self::OtherRun

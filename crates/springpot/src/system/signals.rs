@@ -62,7 +62,11 @@ impl System {
             }
         })?;
         self.check_samples(settings)?;
-        let (least, limit) = (agenda.least_steps(settings.end, longest), settings.step_limit(agenda.switches()));
+        let limit = settings.step_limit(agenda.switches());
+        let (least, times) = (agenda.least_steps(settings.end, longest), settings.end / longest);
+        if times > limit as f64 {
+            return Err(RunError::TooShortSteps { longest, times, limit });
+        }
         if least > limit as f64 {
             let what = self.busiest(&named, settings, longest, tolerance).unwrap_or_else(|| "the motion".to_owned());
             return Err(RunError::TooBusy { what, times: least, limit });

@@ -3,7 +3,8 @@
 
 use crate::support::robots::every;
 use crate::support::truth::{derivatives, pair_at};
-use crate::support::{cases, largest, run_case};
+use crate::support::{cases, largest, run, run_case};
+use springpot::law::{Catalog, Derivative, Point};
 use std::fmt::Write as _;
 
 const TOLERANCE: f64 = 1e-9;
@@ -185,4 +186,26 @@ fn every_law_on_random_robots() {
     // Riemann–Liouville with x(0) ≠ 0 has a ledger at the orders 0 and 1 alone.
     assert_eq!(ledgers, 9 + 2);
     assert!(compared > 9 * 2 * 10 * 28 * 3);
+}
+
+/// A springpot behind a spring that jumps: its stroke begins alike on every scale of time, the more so the smaller alpha is.
+#[test]
+fn relaxation_of_a_series_from_its_jump_on() {
+    let entry = Catalog::standard();
+    let entry = entry.get("fractional-zener").unwrap();
+    let at = Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &[] };
+    for (alpha, rtol) in [(0.005, 1e-6_f64), (0.01, 1e-6), (0.01, 1e-9), (0.02, 1e-9), (0.3, 1e-9)] {
+        let law = entry.build(&[2.0, 30.0, 5.0, alpha], Derivative::Caputo).unwrap();
+        let run = run(&format!(
+            "[[robot.body]]\nname = \"a\"\njoint = {{ name = \"x\", kind = \"prismatic\", axis = [1, 0, 0] }}\nmass = 1\n\
+             [[element]]\nname = \"s\"\njoint = \"x\"\nlaw = \"fractional-zener\"\npast = \"unloaded\"\n\
+             parameters = {{ k_e = 2, k_m = 30, c = 5, alpha = {alpha} }}\n[motion]\nkind = \"prescribed\"\njoints = {{ x = 1 }}\n\
+             [time]\nend = 10\noutput_times = {{ from = 1e-5, to = 10, count = 13, scale = \"log\" }}\n[solver]\nrtol = {rtol:e}\n"
+        ));
+        for (t, force) in run.t().into_iter().zip(run.column("s.force")) {
+            let [exact, _] = law.relaxation(&at, t, 0.0).unwrap();
+            let error = (force / exact - 1.0).abs();
+            assert!(error < 10.0 * rtol.min(1e-8), "{alpha} {rtol:e} {t:e}: {error:e}");
+        }
+    }
 }

@@ -7,6 +7,7 @@ use crate::support::{Run, cases, largest, run, run_case, scenarios, shipped};
 use serde_json::Value;
 use springpot::collocation::Nodes;
 use springpot::collocation::RADAU_NODES;
+use springpot::fractional::gamma::gamma;
 use springpot::fractional::{Form, Kind};
 use springpot::law::{Catalog, Point, Power, Start, State, Step};
 use std::f64::consts::PI;
@@ -417,5 +418,30 @@ fn the_power_of_the_memory_is_the_power_of_the_true_force() {
         let error = (ledger - work).abs() / run.report.energy_turned_over.unwrap();
         println!("alpha = {alpha}: stored + dissipated {ledger:.9} J, work {work:.9} J, {error:.1e}");
         assert!(error < 1e-8, "alpha = {alpha}: {error:.1e}");
+    }
+}
+
+/// Rows far below the default first step, of a power that rises like t^{1−alpha}: what is stored and dissipated is the work that is done.
+#[test]
+fn energies_of_the_very_first_rows() {
+    let terms = [(1.0, -3.0), (2.0, 1.0), (3.0, 0.02)];
+    for alpha in [0.1, 0.5, 0.9] {
+        let run = run(&format!(
+            "[[robot.body]]\nname = \"a\"\njoint = {{ name = \"x\", kind = \"prismatic\", axis = [1, 0, 0] }}\nmass = 1\n\
+             [[element]]\nname = \"s\"\njoint = \"x\"\nlaw = \"springpot\"\nparameters = {{ c = 2, alpha = {alpha} }}\nderivative = \"caputo\"\n\
+             [motion]\nkind = \"prescribed\"\njoints = {{ x = \"0.02*t^3 + t^2 - 3*t\" }}\n\
+             [time]\nend = 100\noutput_times = {{ from = 1e-5, to = 100, count = 29, scale = \"log\" }}\n[solver]\nrtol = 1e-9\n"
+        ));
+        let (stored, dissipated) = (run.column("s.stored"), run.column("s.dissipated"));
+        for (k, t) in run.t().into_iter().enumerate() {
+            let work = |(n, by): (f64, f64)| {
+                let force = 2.0 * by * gamma(n + 1.0) / gamma(n + 1.0 - alpha);
+                let own = terms.map(|(m, rate)| m * rate * t.powf(n - alpha + m) / (n - alpha + m));
+                force * own.iter().sum::<f64>()
+            };
+            let work: f64 = terms.map(work).iter().sum();
+            let error = ((stored[k] + dissipated[k]) / work - 1.0).abs();
+            assert!(error < 4e-3, "{alpha} {t:e}: {error:e}");
+        }
     }
 }

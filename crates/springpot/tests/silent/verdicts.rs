@@ -22,6 +22,23 @@ fn a_signal_that_changes_too_often_is_refused_before_the_run() {
     assert!(run.error.is_none() && run.report.switches == Some(59_999), "{:?}", run.report);
 }
 
+/// Where steps are too short, or too few are allowed, no signal is to blame.
+#[test]
+fn too_few_steps_are_told_from_signals_that_change() {
+    for motion in
+        ["kind = \"forward\"\nstart = { q = { q = 1 } }", "kind = \"prescribed\"\njoints = { q = \"sin(t)\" }"]
+    {
+        for (key, most) in [("max_steps = 5", 5), ("max_step = 1e-9", 10_000_000)] {
+            let cases = cases(&(slider(SPRINGPOT, motion, 3.0, 3) + "[solver]\n" + key + "\n"));
+            let plan = cases.plan(0).unwrap();
+            let error = run_system(&plan.system(), &plan.settings).error.unwrap();
+            assert!(matches!(error, RunError::TooShortSteps { limit, .. } if limit == most), "{motion} {key}: {error}");
+            let help = plan.cure(&error).help.unwrap();
+            assert_eq!(help.contains("solver.max_step,"), key.starts_with("max_step ="), "{help}");
+        }
+    }
+}
+
 #[test]
 fn the_resolution_is_recorded() {
     let text = slider(SPRINGPOT, "kind = \"prescribed\"\njoints = { q = \"1+0.1*sin(t)\" }", 8.0, 8);

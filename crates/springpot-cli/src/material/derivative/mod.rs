@@ -37,6 +37,9 @@ enum Problem {
     /// An order asked for twice.
     #[error("--order {0} is given twice")]
     OrderTwice(f64),
+    /// A column of the file has the name of one that is added.
+    #[error("the file has a column `{0}` already, and it is not told what it is a derivative of")]
+    ColumnThere(String),
     /// A choice of rows without a value.
     #[error("--where {0:?} has no `=`; write COLUMN=VALUE")]
     NoValue(String),
@@ -49,6 +52,11 @@ enum Problem {
     /// What a scheme asks of the row on this line.
     #[error("{problem}")]
     Row { line: u64, problem: DerivativeError },
+    /// What no number holds.
+    #[error(
+        "`{name}` is no finite number here: steps of time are too short, or values too large; write both in other units"
+    )]
+    NotFinite { line: u64, name: String },
     /// Too many rows for a scheme that wants all at once.
     #[error("{0} wants all rows at once, and there are more than {mib} MiB of them; --scheme exponential streams", mib = HELD >> 20)]
     Large(Method),
@@ -63,13 +71,16 @@ enum Problem {
 impl Problem {
     fn help(&self) -> Option<&'static str> {
         let restarts = matches!(self, Self::Csv(CsvProblem::TimeNotIncreasing { time, before, .. }) if time < before);
+        if matches!(self, Self::ColumnThere(_)) {
+            return Some("name that column otherwise, or take it out of the file");
+        }
         restarts.then_some("where the rows of several cases follow one another, choose one: --where COLUMN=VALUE")
     }
 
     fn line(&self) -> Option<u64> {
         match self {
             Self::Csv(problem) => problem.line(),
-            Self::Row { line, .. } | Self::TooFewRows { line, .. } => Some(*line),
+            Self::Row { line, .. } | Self::NotFinite { line, .. } | Self::TooFewRows { line, .. } => Some(*line),
             _ => None,
         }
     }

@@ -49,7 +49,34 @@ impl Layout {
         let mut written = vec![time];
         written.extend((0..names.len()).filter(|column| *column != time));
         let (orders, definition) = (options.orders.clone(), options.kind);
-        Ok(Self { time, columns, orders, definition, written, names: names.to_vec(), taken })
+        let layout = Self { time, columns, orders, definition, written, names: names.to_vec(), taken };
+        match layout.added(options.error).into_iter().find(|name| names.contains(name)) {
+            Some(name) => Err(Problem::ColumnThere(name)),
+            None => Ok(layout),
+        }
+    }
+
+    /// Names of the derivatives, by column and order.
+    pub(super) fn results(&self) -> Vec<String> {
+        let of_column = |k: &usize| {
+            let column = &self.names[*k];
+            self.orders.iter().map(move |order| format!("D^{order} {column}"))
+        };
+        self.columns.iter().flat_map(of_column).collect()
+    }
+
+    /// Names of the columns that are added: behind every derivative its estimate, where there is one.
+    fn added(&self, with_error: bool) -> Vec<String> {
+        let with_own = |name: String| {
+            let error = with_error.then(|| format!("error of {name}"));
+            [Some(name), error].into_iter().flatten()
+        };
+        self.results().into_iter().flat_map(with_own).collect()
+    }
+
+    /// Whether a derivative may be this in a row: without bound at the start alone, where a jump from nothing counts.
+    pub(super) fn may_be(&self, value: f64, is_first: bool) -> bool {
+        value.is_finite() || (is_first && self.definition != Definition::Caputo)
     }
 
     /// Refuses an order before a row is read.
@@ -82,15 +109,7 @@ impl Layout {
     /// The header line; `with_error` puts an estimate behind every derivative.
     pub(super) fn header(&self, with_error: bool) -> Vec<u8> {
         let mut cells: Vec<String> = self.written.iter().map(|column| self.names[*column].clone()).collect();
-        for column in &self.columns {
-            for order in &self.orders {
-                let name = format!("D^{order} {}", self.names[*column]);
-                cells.push(name.clone());
-                if with_error {
-                    cells.push(format!("error of {name}"));
-                }
-            }
-        }
+        cells.extend(self.added(with_error));
         let mut text = Vec::new();
         push_cells(&mut text, cells.iter().map(String::as_bytes));
         text.push(b'\n');

@@ -21,7 +21,8 @@ pub(super) fn differentiate(
     let mut writer = Writer::new(layout, output)?;
     for row in 0..held.times.len() {
         let values = held.values.iter().map(|column| column[row]);
-        let pushed = writer.push(held.times[row], values, |text| text.extend_from_slice(held.row_text(row)));
+        let at = (held.line(row), held.times[row]);
+        let pushed = writer.push(at, values, |text| text.extend_from_slice(held.row_text(row)));
         pushed.map_err(|problem| at_line(held.line(row), problem))?;
     }
     drop(held);
@@ -35,7 +36,7 @@ pub(super) fn differentiate(
         for value in layout.values(&row) {
             values.push(value?);
         }
-        let pushed = writer.push(time, values.iter().copied(), |text| layout.text(&row, text));
+        let pushed = writer.push((row.line(), time), values.iter().copied(), |text| layout.text(&row, text));
         pushed.map_err(|problem| at_line(row.line(), problem))?;
     }
     writer.finish(rows.line())
@@ -51,6 +52,7 @@ fn at_line(line: u64, problem: Problem) -> Problem {
 
 /// Rows wait here until their derivatives are known.
 struct Writer<'a> {
+    layout: &'a Layout,
     output: &'a mut dyn Write,
     /// Until the first row is known: a mistake before leaves no output.
     header: Option<Vec<u8>>,
@@ -68,12 +70,13 @@ struct Writer<'a> {
 }
 
 impl<'a> Writer<'a> {
-    fn new(layout: &Layout, output: &'a mut dyn Write) -> Result<Self, Problem> {
+    fn new(layout: &'a Layout, output: &'a mut dyn Write) -> Result<Self, Problem> {
         let orders = layout.orders.iter().cycle().take(layout.orders.len() * layout.count());
         let streams = orders.map(|order| Stream::new(*order, layout.definition));
         let streams: Vec<Stream> = streams.collect::<Result<_, _>>()?;
         let known = vec![Vec::new(); streams.len()];
         Ok(Self {
+            layout,
             output,
             header: Some(layout.header(false)),
             streams,
@@ -87,10 +90,10 @@ impl<'a> Writer<'a> {
         })
     }
 
-    /// Takes a row, whose own cells are put by `text`.
+    /// Takes a row on a line, whose own cells are put by `text`.
     fn push(
         &mut self,
-        time: f64,
+        (line, time): (u64, f64),
         values: impl Iterator<Item = f64>,
         text: impl FnOnce(&mut Vec<u8>),
     ) -> Result<(), Problem> {
@@ -99,7 +102,7 @@ impl<'a> Writer<'a> {
         }
         self.last = Some(time);
         self.taken += 1;
-        self.waiting.push(text);
+        self.waiting.push(line, text);
         let streams = self.streams.chunks_mut(self.orders).zip(self.known.chunks_mut(self.orders));
         for (value, (streams, known)) in values.zip(streams) {
             for (stream, known) in streams.iter_mut().zip(known) {
@@ -123,13 +126,18 @@ impl<'a> Writer<'a> {
     /// Writes the rows whose derivatives are known.
     fn write(&mut self) -> Result<(), Problem> {
         for row in 0..self.known[0].len() {
+            let (text, line) = self.waiting.pop();
+            let (layout, is_first) = (self.layout, self.header.is_some());
+            if let Some(k) = self.known.iter().position(|values| !layout.may_be(values[row], is_first)) {
+                return Err(Problem::NotFinite { line, name: layout.results().swap_remove(k) });
+            }
             if let Some(header) = self.header.take() {
                 self.output.write_all(&header)?;
             }
             self.cells.clear();
             push_fields(&mut self.cells, self.known.iter().map(|values| values[row]));
             self.cells.push('\n');
-            self.output.write_all(self.waiting.pop())?;
+            self.output.write_all(text)?;
             self.output.write_all(self.cells.as_bytes())?;
         }
         Ok(())
@@ -140,27 +148,27 @@ impl<'a> Writer<'a> {
 #[derive(Default)]
 struct Waiting {
     text: Vec<u8>,
-    /// Where they end.
-    ends: VecDeque<usize>,
+    /// Where they end, and on which lines they stand.
+    ends: VecDeque<(usize, u64)>,
     /// Where the first of them begins.
     start: usize,
 }
 
 impl Waiting {
-    fn push(&mut self, put: impl FnOnce(&mut Vec<u8>)) {
+    fn push(&mut self, line: u64, put: impl FnOnce(&mut Vec<u8>)) {
         if self.start > WAITING {
             self.text.drain(..self.start);
-            self.ends.iter_mut().for_each(|end| *end -= self.start);
+            self.ends.iter_mut().for_each(|(end, _)| *end -= self.start);
             self.start = 0;
         }
         put(&mut self.text);
-        self.ends.push_back(self.text.len());
+        self.ends.push_back((self.text.len(), line));
     }
 
     /// Panics where none waits.
-    fn pop(&mut self) -> &[u8] {
-        let (start, end) = (self.start, self.ends.pop_front().expect("a row for every value"));
+    fn pop(&mut self) -> (&[u8], u64) {
+        let (start, (end, line)) = (self.start, self.ends.pop_front().expect("a row for every value"));
         self.start = end;
-        &self.text[start..end]
+        (&self.text[start..end], line)
     }
 }

@@ -19,7 +19,7 @@ pub(super) fn differentiate(
         return Err(Problem::TooFewRows { line: last_line, given: sheet.times.len() });
     }
     let times = steps::from_start(&sheet.times);
-    let mut results: Vec<Vec<f64>> = Vec::new();
+    let (mut results, mut names): (Vec<Vec<f64>>, _) = (Vec::new(), layout.results().into_iter());
     for values in &sheet.values {
         let samples = Samples { t: &times, x: values, rate: None };
         for &order in &layout.orders {
@@ -27,12 +27,18 @@ pub(super) fn differentiate(
                 Some(row) => Problem::Row { line: sheet.line(row), problem },
                 None => problem.into(),
             };
-            if with_error {
+            let (values, error) = if with_error {
                 let estimated = derivative_with_error(&samples, order, layout.definition, method).map_err(on_line)?;
-                results.extend([estimated.values, estimated.error]);
+                (estimated.values, Some(estimated.error))
             } else {
-                results.push(derivative(&samples, order, layout.definition, method).map_err(on_line)?);
+                (derivative(&samples, order, layout.definition, method).map_err(on_line)?, None)
+            };
+            let name = names.next().unwrap_or_default();
+            if let Some(row) = values.iter().enumerate().position(|(row, value)| !layout.may_be(*value, row == 0)) {
+                return Err(Problem::NotFinite { line: sheet.line(row), name });
             }
+            results.push(values);
+            results.extend(error);
         }
     }
     output.write_all(&layout.header(with_error))?;

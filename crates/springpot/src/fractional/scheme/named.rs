@@ -172,12 +172,13 @@ impl FromStr for Scheme {
     fn from_str(name: &str) -> Result<Self, SchemeNameError> {
         let unknown = || SchemeNameError::Unknown(name.to_owned());
         // Digits alone: no sign, no blank.
-        let number = |text: &str| {
+        let number = |text: &str, (min, max): (u32, u32)| {
             if text.is_empty() || !text.bytes().all(|b| b.is_ascii_digit()) {
                 return Err(unknown());
             }
-            Ok(text.parse().unwrap_or(u32::MAX))
+            text.parse::<u32>().map_err(|_| SchemeNameError::Large { name: name.to_owned(), min, max })
         };
+        let ends = |range: RangeInclusive<u32>| (*range.start(), *range.end());
         let argument = |form: &str| name.strip_prefix(form).and_then(|rest| rest.strip_prefix('(')?.strip_suffix(')'));
         let scheme = match name {
             "grunwald-letnikov" => Self::GrunwaldLetnikov,
@@ -185,14 +186,15 @@ impl FromStr for Scheme {
             "l1-2" => Self::L12,
             _ => {
                 if let Some(order) = name.strip_prefix("fbdf-") {
-                    let order = number(order)?;
+                    let orders = Self::FBDF_ORDERS;
+                    let order = number(order, ((*orders.start()).into(), (*orders.end()).into()))?;
                     Self::Fbdf(u8::try_from(order).map_err(|_| SchemeNameError::Order(order))?)
                 } else if let Some(samples) = argument("grunwald-letnikov") {
-                    Self::ShortGrunwaldLetnikov(number(samples)?)
+                    Self::ShortGrunwaldLetnikov(number(samples, ends(Self::MEMORY))?)
                 } else if let Some(terms) = argument("expansion-2004") {
-                    Self::Expansion2004(number(terms)?)
+                    Self::Expansion2004(number(terms, ends(Self::TERMS_2004))?)
                 } else if let Some(terms) = argument("expansion-2008") {
-                    Self::Expansion2008(number(terms)?)
+                    Self::Expansion2008(number(terms, ends(Self::TERMS_2008))?)
                 } else {
                     return Err(unknown());
                 }
@@ -237,6 +239,16 @@ pub enum SchemeNameError {
         min = Scheme::MEMORY.start(), max = Scheme::MEMORY.end()
     )]
     Memory(u32),
+    /// A number that is too large to be told as one.
+    #[error("{name} does not exist: its number must lie between {min} and {max}")]
+    Large {
+        /// As it was asked for.
+        name: String,
+        /// The smallest that exists.
+        min: u32,
+        /// The largest.
+        max: u32,
+    },
     /// The expansion's number of terms is out of range.
     #[error("expansion-{form}({terms}): the number of terms must lie between {min} and {max}")]
     Terms {

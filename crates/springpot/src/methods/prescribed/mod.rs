@@ -34,6 +34,14 @@ const LONGEST_STEP: f64 = 1.0 / 500.0;
 /// The first inner step is this share of the longest.
 const FIRST_STEP: f64 = 1.0 / 64.0;
 
+/// Where rows come before its end, it is this share of the time of the first of them: energies within a first step are told by powers that rise there
+/// like no polynomial.
+const BEFORE_ROWS: f64 = 1.0 / 16.0;
+
+/// And so much shorter where memories in series begin with a jump: what is inside bends there alike on every scale of time, and estimates of the
+/// first step miss what it errs by.
+const BEHIND_JUMP: f64 = 1e-5;
+
 /// Shortest step as a share of the motion.
 const SHORTEST_STEP: f64 = 1e-13;
 
@@ -156,6 +164,23 @@ impl Prescribed {
         let rows = recorder.settings.rows.clone();
         recorder.grid = on_grid::derivatives(cx, &self.trajectory, &rows, &mut recorder.scratch)?;
         Ok(())
+    }
+
+    /// The first inner step where nobody gives one, s.
+    fn first_step(&self, cx: Context, recorder: &Recorder) -> f64 {
+        let (settings, [at, ..]) = (&recorder.settings, &recorder.evaluations);
+        let mut first = self.longest_step(cx, settings) * FIRST_STEP;
+        let begins_bent = cx.system.elements.iter().zip(&at.elements).any(|(element, at)| {
+            element.law.has_memories_in_series() && element.start(at.reading.coordinate, &at.inputs).jump != 0.0
+        });
+        if begins_bent {
+            first *= BEHIND_JUMP;
+        }
+        let mut rows = (0..settings.rows.count().min(2)).map(|row| settings.rows.at(row));
+        match rows.find(|t| *t > 0.0) {
+            Some(row) if row < first => (BEFORE_ROWS * row).max(SHORTEST_STEP * settings.end),
+            _ => first,
+        }
     }
 
     /// Evaluates the step without keeping it; an element that turns over on the way is asked for a shorter one.
@@ -344,7 +369,7 @@ impl Stepper for Prescribed {
         let Scale { energy, strokes } = cx.scale_of(&self.trajectory, settings.end, &mut recorder.scratch);
         (self.energy_floor, self.largest) = (energy, strokes);
         recorder.begin(cx)?;
-        let first = settings.first_step.unwrap_or(self.longest_step(cx, &settings) * FIRST_STEP);
+        let first = settings.first_step.unwrap_or_else(|| self.first_step(cx, recorder));
         Ok(agenda.reach(0.0, first.min(settings.end)))
     }
 
