@@ -73,6 +73,8 @@ impl<T: Scalar> Columns<T> for T {
 pub(crate) trait Numbers<T> {
     fn count(&self) -> usize;
     fn at(&self, k: usize) -> T;
+    /// All of them, into a slice of as many.
+    fn copy_into(&self, row: &mut [T]);
 }
 
 impl<T: Copy> Numbers<T> for [T] {
@@ -84,6 +86,11 @@ impl<T: Copy> Numbers<T> for [T] {
     #[inline(always)]
     fn at(&self, k: usize) -> T {
         self[k]
+    }
+
+    #[inline(always)]
+    fn copy_into(&self, row: &mut [T]) {
+        row.copy_from_slice(self);
     }
 }
 
@@ -104,6 +111,13 @@ impl<T: Scalar> Numbers<T> for Placed<'_, T> {
     fn at(&self, k: usize) -> T {
         let place = self.places[k] as usize;
         if place < self.values.len() { self.values[place] } else { T::ZERO }
+    }
+
+    #[inline(always)]
+    fn copy_into(&self, row: &mut [T]) {
+        for (k, number) in row.iter_mut().enumerate() {
+            *number = self.at(k);
+        }
     }
 }
 
@@ -128,9 +142,7 @@ impl Rows for f64 {
     }
 
     fn write(values: &(impl Numbers<Self> + ?Sized), _: usize, rows: &mut [f64]) -> Self {
-        for (k, number) in rows[..values.count()].iter_mut().enumerate() {
-            *number = values.at(k);
-        }
+        values.copy_into(&mut rows[..values.count()]);
         0.0
     }
 
