@@ -1,6 +1,6 @@
 //! The mass matrix factorised along the tree, and what follows from it.
 
-use super::crba::crba_into;
+use super::crba::lower_crba_into;
 use super::kinematics::Kinematics;
 use super::workspace::Workspace;
 use crate::model::Model;
@@ -110,18 +110,26 @@ pub(super) fn solve_matrix<T: Scalar>(model: &Model, factor: &[T], x: &mut [T]) 
 #[inline(always)]
 pub fn inverse_from_cholesky_into<T: Scalar>(model: &Model, factor: &[T], inverse: &mut [T]) {
     let n = model.nv();
-    assert_eq!(factor.len(), n * n, "the factors are nv x nv");
-    assert_eq!(inverse.len(), n * n, "the inverse is nv x nv");
-    inverse.fill(T::ZERO);
-    for k in 0..n {
-        inverse[k * n + k] = T::ONE;
-    }
-    T::in_columns(Sweeps { model, factor, rows: inverse, is_inverse: true });
+    upper_inverse_from_cholesky_into(model, factor, inverse);
     for k in 1..n {
         for j in 0..k {
             inverse[k * n + j] = inverse[j * n + k];
         }
     }
+}
+
+/// Its upper triangle; the lower one is left without meaning.
+#[inline(always)]
+pub(super) fn upper_inverse_from_cholesky_into<T: Scalar>(model: &Model, factor: &[T], inverse: &mut [T]) {
+    let n = model.nv();
+    assert_eq!(factor.len(), n * n, "the factors are nv x nv");
+    assert_eq!(inverse.len(), n * n, "the inverse is nv x nv");
+    // The first sweep reads zeros below the diagonal.
+    inverse.fill(T::ZERO);
+    for k in 0..n {
+        inverse[k * n + k] = T::ONE;
+    }
+    T::in_columns(Sweeps { model, factor, rows: inverse, is_inverse: true });
 }
 
 /// Rows of X with M X = Y for Y in their place: L⁻ᵀ from the tips inwards, then L⁻¹ D⁻¹ outwards. Every row is gathered from those that it
@@ -253,7 +261,8 @@ fn gather_block<T: Scalar, C: Columns<T>, const B: usize>(
 
 /// Inverse of the mass matrix, M(q)⁻¹ = ∂a/∂τ; needs positions.
 ///
-/// `factor` and `inverse` are nv × nv, row-major; `factor` is left with the factors of [`cholesky_into`].
+/// `factor` and `inverse` are nv × nv, row-major; the lower triangle of `factor` is left with the factors of
+/// [`cholesky_into`], the upper one without meaning.
 #[inline(always)]
 pub fn mass_inverse_into<T: Scalar>(
     model: &Model,
@@ -262,9 +271,23 @@ pub fn mass_inverse_into<T: Scalar>(
     factor: &mut [T],
     inverse: &mut [T],
 ) {
-    crba_into(model, kinematics, workspace, factor);
+    lower_crba_into(model, kinematics, workspace, factor);
     cholesky_into(model, factor);
     inverse_from_cholesky_into(model, factor, inverse);
+}
+
+/// [`mass_inverse_into`] of which the upper triangle is asked for.
+#[inline(always)]
+pub(super) fn upper_mass_inverse_into<T: Scalar>(
+    model: &Model,
+    kinematics: &Kinematics<T>,
+    workspace: &mut Workspace<T>,
+    factor: &mut [T],
+    inverse: &mut [T],
+) {
+    lower_crba_into(model, kinematics, workspace, factor);
+    cholesky_into(model, factor);
+    upper_inverse_from_cholesky_into(model, factor, inverse);
 }
 
 /// [`mass_inverse_into`], allocating: the inverse alone.
@@ -332,7 +355,7 @@ mod tests {
         let model = tree();
         let (n, q) = (model.nv(), model.random(7));
         let kinematics = Kinematics::at_position(&model, &q);
-        let (mut factor, mut inverse) = (vec![0.0; n * n], vec![0.0; n * n]);
+        let (mut factor, mut inverse) = (vec![f64::NAN; n * n], vec![f64::NAN; n * n]);
         mass_inverse_into(&model, &kinematics, &mut Workspace::new(&model), &mut factor, &mut inverse);
         let rows: Vec<f64> = (0..n * n).map(|k| (1.0 + 0.7 * k as f64).sin()).collect();
         let mut solved = rows.clone();

@@ -1,7 +1,7 @@
 //! Whether the mass matrix is positive definite.
 
 use super::cholesky::cholesky_into;
-use super::crba::crba_into;
+use super::crba::lower_crba_into;
 use super::kinematics::Kinematics;
 use super::workspace::Workspace;
 use crate::model::Model;
@@ -17,7 +17,7 @@ pub fn indefinite_joint_into(
     workspace: &mut Workspace,
     mass: &mut [f64],
 ) -> Option<usize> {
-    crba_into(model, kinematics, workspace, mass);
+    lower_crba_into(model, kinematics, workspace, mass);
     cholesky_into(model, mass);
     // Once a pivot is not positive, those nearer the root mean nothing. NaN is not positive either.
     let is_positive = |k: usize| mass[k * model.nv() + k] > 0.0;

@@ -69,14 +69,67 @@ impl<T: Scalar> Columns<T> for T {
     }
 }
 
+/// Numbers of a row.
+pub(crate) trait Numbers<T> {
+    fn count(&self) -> usize;
+    fn at(&self, k: usize) -> T;
+    /// All of them, into a slice of as many.
+    fn copy_into(&self, row: &mut [T]);
+}
+
+impl<T: Copy> Numbers<T> for [T] {
+    #[inline(always)]
+    fn count(&self) -> usize {
+        self.len()
+    }
+
+    #[inline(always)]
+    fn at(&self, k: usize) -> T {
+        self[k]
+    }
+
+    #[inline(always)]
+    fn copy_into(&self, row: &mut [T]) {
+        row.copy_from_slice(self);
+    }
+}
+
+/// Each from its place.
+pub(crate) struct Placed<'a, T> {
+    pub(crate) values: &'a [T],
+    pub(crate) places: &'a [u32],
+}
+
+impl<T: Scalar> Numbers<T> for Placed<'_, T> {
+    #[inline(always)]
+    fn count(&self) -> usize {
+        self.places.len()
+    }
+
+    /// 0 from a place beyond all values.
+    #[inline(always)]
+    fn at(&self, k: usize) -> T {
+        let place = self.places[k] as usize;
+        if place < self.values.len() { self.values[place] } else { T::ZERO }
+    }
+
+    #[inline(always)]
+    fn copy_into(&self, row: &mut [T]) {
+        for (k, number) in row.iter_mut().enumerate() {
+            *number = self.at(k);
+        }
+    }
+}
+
 /// States side by side, which lie one after the other outside.
 pub(crate) trait Rows: Scalar {
     /// States side by side.
     const COUNT: usize;
     /// The numbers of `count` states; lanes beyond them repeat the last one. `rows` has `into.len()` numbers for each.
     fn read(rows: &[f64], count: usize, into: &mut [Self]);
-    /// The numbers of the first `count` states into as many `rows`.
-    fn write(values: &[Self], count: usize, rows: &mut [f64]);
+    /// The numbers of the first `count` states into as many `rows`; returned: 0 in lanes in which all are finite, else NaN. One state is not
+    /// looked at: 0.
+    fn write(values: &(impl Numbers<Self> + ?Sized), count: usize, rows: &mut [f64]) -> Self;
     /// Runs a task compiled for these lanes.
     fn enter(task: impl Task);
 }
@@ -88,8 +141,9 @@ impl Rows for f64 {
         into.copy_from_slice(&rows[..into.len()]);
     }
 
-    fn write(values: &[Self], _: usize, rows: &mut [f64]) {
-        rows[..values.len()].copy_from_slice(values);
+    fn write(values: &(impl Numbers<Self> + ?Sized), _: usize, rows: &mut [f64]) -> Self {
+        values.copy_into(&mut rows[..values.count()]);
+        0.0
     }
 
     fn enter(task: impl Task) {

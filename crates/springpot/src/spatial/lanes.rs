@@ -12,7 +12,7 @@ use std::arch::x86_64::*;
 use std::fmt;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use super::columns::{ColumnWork, Columns, Rows};
+use super::columns::{ColumnWork, Columns, Numbers, Rows};
 use super::dispatch::{self, Task};
 use super::scalar::Scalar;
 
@@ -307,22 +307,30 @@ impl<R: Register, const JOINS: bool> Rows for Lanes<R, JOINS> {
     }
 
     #[inline(always)]
-    fn write(values: &[Self], count: usize, rows: &mut [f64]) {
-        let width = values.len();
-        if width < R::WIDTH {
-            return write_some(values, count, rows);
-        }
+    fn write(values: &(impl Numbers<Self> + ?Sized), count: usize, rows: &mut [f64]) -> Self {
+        let width = values.count();
+        // Nothing times a number that is not finite is not a number; several sums, so that none waits for the one before.
+        let mut nothing = [Self::ZERO; 4];
         for from in (0..width).step_by(R::WIDTH) {
-            let from = from.min(width - R::WIDTH);
+            // The last block begins within the one before it, if there is one.
+            let from = from.min(width.saturating_sub(R::WIDTH));
+            let here = R::WIDTH.min(width);
             let mut block = [R::ZERO; 8];
-            for (register, value) in block.iter_mut().zip(&values[from..from + R::WIDTH]) {
-                *register = value.0;
+            for (k, register) in block.iter_mut().enumerate().take(here) {
+                let number = values.at(from + k);
+                nothing[k % 4] = number.times_plus(Self::ZERO, nothing[k % 4]);
+                *register = number.0;
             }
             R::transpose(&mut block[..R::WIDTH]);
             for (lane, register) in block[..count].iter().enumerate() {
-                register.store(&mut rows[lane * width + from..]);
+                if here == R::WIDTH {
+                    register.store(&mut rows[lane * width + from..]);
+                } else {
+                    register.store_some(&mut rows[lane * width..][..width]);
+                }
             }
         }
+        nothing[0] + nothing[1] + (nothing[2] + nothing[3])
     }
 
     fn enter(task: impl Task) {
@@ -341,20 +349,6 @@ fn read_some<R: Register, const JOINS: bool>(rows: &[f64], count: usize, into: &
     R::transpose(&mut block[..R::WIDTH]);
     for (number, register) in into.iter_mut().zip(block) {
         *number = Lanes(register);
-    }
-}
-
-/// As [`read_some`], back.
-#[inline(always)]
-fn write_some<R: Register, const JOINS: bool>(values: &[Lanes<R, JOINS>], count: usize, rows: &mut [f64]) {
-    let width = values.len();
-    let mut block = [R::ZERO; 8];
-    for (register, value) in block.iter_mut().zip(values) {
-        *register = value.0;
-    }
-    R::transpose(&mut block[..R::WIDTH]);
-    for (lane, register) in block[..count].iter().enumerate() {
-        register.store_some(&mut rows[lane * width..][..width]);
     }
 }
 

@@ -33,18 +33,20 @@ mod rooms;
 pub use error::BatchError;
 pub use rooms::BatchWorkspace;
 
-use self::rooms::{Algorithm, Room, run};
+use self::rooms::{Algorithm, Room, Shape, run};
+use super::cholesky::upper_mass_inverse_into;
+use super::crba::coupled_crba_into;
 use super::rnea_second_derivatives::{SecondRoom, second_derivatives_into};
 use super::{
     BODY_NUMBERS, RneaSecondDerivatives as AllSecondDerivatives, aba_derivatives_into as aba_derivatives_of_one,
     aba_into as aba_of_one, centroidal_matrix_into as centroidal_matrix_of_one,
     centroidal_matrix_rate_into as centroidal_matrix_rate_of_one, christoffel_into as christoffel_of_one, com,
-    com_jacobian_into as com_jacobian_of_one, coriolis_into as coriolis_of_one, crba_into as crba_of_one,
-    frame_jacobian_at_into, frame_jacobian_rate_into as frame_jacobian_rate_of_one, gravity_into as gravity_of_one,
+    com_jacobian_into as com_jacobian_of_one, coriolis_into as coriolis_of_one, frame_jacobian_at_into,
+    frame_jacobian_rate_into as frame_jacobian_rate_of_one, gravity_into as gravity_of_one,
     joint_torque_regressor_into as joint_torque_regressor_of_one, kinetic_energy,
-    mass_derivative_into as mass_derivative_of_one, mass_inverse_into as mass_inverse_of_one,
-    nonlinear_effects_into as nonlinear_effects_of_one, pair_into as pair_of_one, potential_energy,
-    rnea_derivatives_into as rnea_derivatives_of_one, rnea_into as rnea_of_one,
+    mass_derivative_into as mass_derivative_of_one, nonlinear_effects_into as nonlinear_effects_of_one,
+    pair_into as pair_of_one, potential_energy, rnea_derivatives_into as rnea_derivatives_of_one,
+    rnea_into as rnea_of_one,
 };
 use crate::model::{Frame, Model, Site};
 use crate::spatial::{Scalar, Vec3};
@@ -142,10 +144,12 @@ pub fn aba_into(
 struct Crba;
 
 impl Algorithm<1, 1> for Crba {
+    const SHAPE: Shape = Shape::Mass;
+
     #[inline(always)]
     fn work<'r, T: Scalar>(&self, model: &Model, room: &'r mut Room<T>, [q]: [&[T]; 1]) -> [&'r [T]; 1] {
         room.kinematics.place(model, q);
-        crba_of_one(model, &room.kinematics, &mut room.workspace, &mut room.square);
+        coupled_crba_into(model, &room.kinematics, &mut room.workspace, &mut room.square);
         [&room.square]
     }
 }
@@ -162,11 +166,13 @@ pub fn crba_into(model: &Model, workspace: &mut BatchWorkspace, q: &[f64], mass:
 struct MassInverse;
 
 impl Algorithm<1, 1> for MassInverse {
+    const SHAPE: Shape = Shape::Upper;
+
     #[inline(always)]
     fn work<'r, T: Scalar>(&self, model: &Model, room: &'r mut Room<T>, [q]: [&[T]; 1]) -> [&'r [T]; 1] {
         let Room { kinematics, workspace, forward_slopes, square, .. } = room;
         kinematics.place(model, q);
-        mass_inverse_of_one(model, kinematics, workspace, &mut forward_slopes.d_tau, square);
+        upper_mass_inverse_into(model, kinematics, workspace, &mut forward_slopes.d_tau, square);
         [square]
     }
 }

@@ -1,10 +1,11 @@
 //! What batches are worked out in, and the loop over their states.
 
 use super::error::BatchError;
+use crate::dynamics::crba::couples;
 use crate::dynamics::rnea_second_derivatives::SecondRoom;
 use crate::dynamics::{AbaDerivatives, Kinematics, RneaDerivatives, RneaSecondDerivatives, Workspace};
 use crate::model::Model;
-use crate::spatial::columns::Rows;
+use crate::spatial::columns::{Placed, Rows};
 use crate::spatial::dispatch::Task;
 #[cfg(target_arch = "x86_64")]
 use crate::spatial::lanes::{Lanes4, Lanes8};
@@ -31,6 +32,45 @@ enum Lanes {
 struct Scratch<T> {
     inputs: [Vec<T>; 3],
     room: Room<T>,
+    symmetric: Symmetric,
+}
+
+/// Where the numbers of symmetric matrices stand, of which one triangle is worked out; nv × nv each.
+#[derive(Debug, Clone)]
+pub(super) struct Symmetric {
+    /// Of the mass matrix, whose lower triangle has numbers where joints couple; beyond all numbers for 0.
+    mass: Vec<u32>,
+    /// Of a matrix whose upper triangle is full.
+    upper: Vec<u32>,
+}
+
+impl Symmetric {
+    fn new(model: &Model) -> Self {
+        let n = model.nv();
+        let place = |row: usize, column: usize| u32::try_from(row * n + column).unwrap_or(u32::MAX);
+        let upper = (0..n * n).map(|k| place((k / n).min(k % n), (k / n).max(k % n))).collect();
+        let mut mass = vec![u32::MAX; n * n];
+        for k in 0..n {
+            mass[k * n + k] = place(k, k);
+        }
+        // With followers both triangles are written.
+        couples(model, |row, column| {
+            mass[row * n + column] = place(row, column);
+            mass[column * n + row] = place(row, column);
+        });
+        Self { mass, upper }
+    }
+}
+
+/// Of which numbers a result consists.
+#[derive(Clone, Copy)]
+pub(super) enum Shape {
+    /// Of those that are left, in their order.
+    AsItIs,
+    /// As [`Symmetric::mass`] says.
+    Mass,
+    /// As [`Symmetric::upper`] says.
+    Upper,
 }
 
 /// Where an algorithm works, and leaves its results.
@@ -79,7 +119,8 @@ impl<T: Rows> Scratch<T> {
             more: [T::ZERO; 9],
         };
         let width = model.nq().max(n);
-        Self { inputs: [zeros(width), zeros(width), zeros(width)], room }
+        let inputs = [zeros(width), zeros(width), zeros(width)];
+        Self { inputs, room, symmetric: Symmetric::new(model) }
     }
 }
 
@@ -128,6 +169,9 @@ impl BatchWorkspace {
 
 /// One algorithm, on states side by side.
 pub(super) trait Algorithm<const I: usize, const O: usize> {
+    /// How the results are laid out.
+    const SHAPE: Shape = Shape::AsItIs;
+
     /// Works from `inputs`, and says where in the room the results are. Inlined, as all that it calls.
     fn work<'r, T: Scalar>(&self, model: &Model, room: &'r mut Room<T>, inputs: [&[T]; I]) -> [&'r [T]; O];
 }
@@ -219,10 +263,9 @@ struct All<'a, 'o, A, T, const I: usize, const O: usize> {
 impl<A: Algorithm<I, O>, T: Rows, const I: usize, const O: usize> Task for All<'_, '_, A, T, I, O> {
     #[inline(always)]
     fn run(self) {
-        let Scratch { inputs: lanes, room } = self.scratch;
-        // Nothing times a number that is not finite is not a number; several sums, so that none waits for the one before. One state at a time
-        // is looked at faster outside.
-        let mut nothing = [T::ZERO; 4];
+        let Scratch { inputs: lanes, room, symmetric } = self.scratch;
+        // One state at a time is looked at faster outside.
+        let mut nothing = T::ZERO;
         let mut first = 0;
         while first < self.count {
             let here = T::COUNT.min(self.count - first);
@@ -237,22 +280,17 @@ impl<A: Algorithm<I, O>, T: Rows, const I: usize, const O: usize> Task for All<'
             for k in 0..O {
                 let (numbers, width) = &mut self.outputs[k];
                 let width = *width;
-                let results = &results[k][..width];
-                T::write(results, here, &mut numbers[first * width..][..here * width]);
-                if T::COUNT == 1 {
-                    continue;
-                }
-                for some in results.chunks(nothing.len()) {
-                    for (sum, number) in nothing.iter_mut().zip(some) {
-                        *sum += *number * T::ZERO;
-                    }
-                }
+                let rows = &mut numbers[first * width..][..here * width];
+                nothing += match A::SHAPE {
+                    Shape::AsItIs => T::write(&results[k][..width], here, rows),
+                    Shape::Mass => T::write(&Placed { values: results[k], places: &symmetric.mass }, here, rows),
+                    Shape::Upper => T::write(&Placed { values: results[k], places: &symmetric.upper }, here, rows),
+                };
             }
             first += here;
         }
-        let sums = nothing[0] + nothing[1] + (nothing[2] + nothing[3]);
         let mut lanes = [0.0; 8];
-        T::write(&[sums], T::COUNT, &mut lanes[..T::COUNT]);
+        T::write([nothing].as_slice(), T::COUNT, &mut lanes[..T::COUNT]);
         *self.is_finite = T::COUNT > 1 && lanes == [0.0; 8];
     }
 }
