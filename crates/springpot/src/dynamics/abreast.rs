@@ -5,15 +5,15 @@
 
 use super::forces::pair::{pair_hessian_of_moving, pair_into};
 use super::kinematics::Kinematics;
-use super::regressor::{add_gravity_efforts, add_inertia_efforts};
-use super::rnea_derivatives::{RneaDerivatives, rnea_derivatives_of_moving};
+use super::regressor::{LinkMotion, add_gravity_efforts, add_inertia_efforts};
+use super::rnea_derivatives::{RneaDerivatives, Weighed, rnea_derivatives_of_moving, weigh_places};
 use super::workspace::Workspace;
 use crate::model::{Model, Site};
 use crate::spatial::columns::Rows;
 use crate::spatial::dispatch::Task;
 #[cfg(target_arch = "x86_64")]
 use crate::spatial::lanes::Apart4;
-use crate::spatial::{Inertia, Scalar, SimdLevel};
+use crate::spatial::{Inertia, Scalar, SimdLevel, Vec3};
 
 /// What is asked of a robot.
 #[derive(Debug, Default)]
@@ -103,6 +103,10 @@ struct Room<T> {
     gradient: Vec<T>,
     bend: Vec<T>,
     hessian: Vec<T>,
+    /// What is weighed: weights, what they carry, and sums.
+    weights: Vec<T>,
+    weighed: Weighed<T>,
+    sums: Vec<T>,
 }
 
 /// A room, in which kinematics stand at once.
@@ -127,6 +131,9 @@ impl<T: Rows> Task for Make<'_, T> {
             gradient: zeros(n),
             bend: zeros(n),
             hessian: zeros(n * n),
+            weights: Vec::new(),
+            weighed: Weighed::of_nothing(),
+            sums: Vec::new(),
         }));
     }
 }
@@ -164,6 +171,133 @@ impl Abreast {
     }
 }
 
+/// What M numbers weigh in a state, one row of numbers a state.
+pub(crate) struct Weights<'a> {
+    /// M.
+    pub(crate) count: usize,
+    /// M for the effort of each velocity; for each line M for its length, M for its rate, and its force.
+    pub(crate) rows: &'a [f64],
+}
+
+impl Sought {
+    /// How many numbers a row of [`Weights`] has.
+    pub(crate) fn weights(&self, count: usize) -> usize {
+        self.moves.len() * count + self.lines.len() * (2 * count + 1)
+    }
+
+    /// How many sums [`Abreast::weigh`] makes.
+    pub(crate) fn sums(&self, count: usize) -> usize {
+        (self.moves.len() + self.changes()) * count
+    }
+}
+
+impl Abreast {
+    /// Adds what all `states` have in sum of Σ μ τ + s y + r y', τ with the forces of the lines, by each velocity that stands still, and by each change:
+    /// M numbers each.
+    pub(crate) fn weigh(&mut self, model: &Model, states: &[State], weights: &Weights, sums: &mut [f64]) {
+        let Self { sought, lanes, rows } = self;
+        match lanes {
+            Lanes::One(room) => f64::enter(Weigh { model, sought, room, rows, states, weights, sums }),
+            #[cfg(target_arch = "x86_64")]
+            Lanes::Four(room) => Apart4::enter(Weigh { model, sought, room, rows, states, weights, sums }),
+        }
+    }
+}
+
+/// [`Abreast::weigh`].
+struct Weigh<'a, 's, T> {
+    model: &'a Model,
+    sought: &'a Sought,
+    room: &'a mut Room<T>,
+    rows: &'a mut Vec<f64>,
+    states: &'a [State<'s>],
+    weights: &'a Weights<'a>,
+    sums: &'a mut [f64],
+}
+
+impl<T: Rows> Task for Weigh<'_, '_, T> {
+    #[inline(always)]
+    fn run(self) {
+        let Self { model, sought, room, rows, states, weights: Weights { count, rows: weights }, sums } = self;
+        let (n, count, moves) = (model.nv(), *count, &sought.moves[..]);
+        let width = sought.weights(count);
+        room.weights.resize(width, T::ZERO);
+        room.sums.resize(sought.sums(count), T::ZERO);
+        rows.resize(rows.len().max(T::COUNT * model.nq().max(n).max(room.sums.len())), 0.0);
+        let mut first = 0;
+        while first < states.len() {
+            let here = T::COUNT.min(states.len() - first);
+            read(&mut room.state, rows, &states[first..first + here]);
+            T::read(&weights[first * width..(first + here) * width], here, &mut room.weights);
+            room.sums.fill(T::ZERO);
+            let ([q, v, a], (own, of_lines)) = (&room.state, room.weights.split_at(n * count));
+            let (by_place, by_change) = room.sums.split_at_mut(n * count);
+            room.kinematics.update_velocity_of_moving(model, q, v, moves);
+            let standing = (moves, &mut room.workspace);
+            weigh_places(model, &room.kinematics, a, standing, (own, count), &mut room.weighed, by_place);
+            let mut changes = by_change.chunks_exact_mut(count);
+            for (joint, inertias) in &sought.links {
+                let link = LinkMotion::of(&room.kinematics, &room.workspace, *joint);
+                for (inertia, sums) in inertias.iter().zip(changes.by_ref()) {
+                    for (sum, along) in sums.iter_mut().zip(&room.weighed.motions[(joint + 1) * count..]) {
+                        link.add_along(*along, std::slice::from_ref(inertia), std::iter::once(sum));
+                    }
+                }
+            }
+            for (field, sums) in sought.fields.iter().zip(changes) {
+                for (sum, momentum) in sums.iter_mut().zip(&room.weighed.momenta) {
+                    *sum -= momentum.linear.dot(Vec3::from_f64(Vec3(*field)));
+                }
+            }
+            for ((_, [from, to]), weights) in sought.lines.iter().zip(of_lines.chunks_exact(2 * count + 1)) {
+                let (hessian, moving) = (&mut room.hessian[..], |velocity: usize| moves[velocity]);
+                pair_into(model, &room.kinematics, from, to, &mut room.gradient);
+                pair_hessian_of_moving(model, &room.kinematics, [from, to], moving, &mut room.workspace, hessian);
+                weigh_measure((moves, v, own), weights, [&room.gradient, hessian], by_place);
+            }
+            T::write(&room.sums, here, &mut rows[..here * room.sums.len()]);
+            for row in rows.chunks_exact(room.sums.len()).take(here) {
+                sums.iter_mut().zip(row).for_each(|(sum, own)| *sum += own);
+            }
+            first += here;
+        }
+    }
+}
+
+/// Adds what M numbers have of a measure y by each velocity that stands still, M numbers each: s ∂y/∂q + Σ_b (r v_b + F μ_b) ∂²y/∂q_b∂q, with v and μ of
+/// the velocities that move, weights s and r, and F behind them.
+#[inline(always)]
+pub(crate) fn weigh_measure<T: Scalar>(
+    (moves, v, own): (&[bool], &[T], &[T]),
+    weights: &[T],
+    [gradient, hessian]: [&[T]; 2],
+    by_place: &mut [T],
+) {
+    let (n, count) = (moves.len(), weights.len() / 2);
+    let force = weights[2 * count];
+    for k in (0..n).filter(|k| !moves[*k]) {
+        for m in 0..count {
+            let mut sum = weights[m] * gradient[k];
+            for row in (0..n).filter(|row| moves[*row]) {
+                sum += (weights[count + m] * v[row] + force * own[row * count + m]) * hessian[row * n + k];
+            }
+            by_place[k * count + m] += sum;
+        }
+    }
+}
+
+/// Takes in states side by side.
+#[inline(always)]
+fn read<T: Rows>(into: &mut [Vec<T>; 3], rows: &mut [f64], states: &[State]) {
+    for (which, numbers) in into.iter_mut().enumerate() {
+        let width = numbers.len();
+        for (row, state) in rows.chunks_exact_mut(width.max(1)).zip(states) {
+            row.copy_from_slice(state[which]);
+        }
+        T::read(&rows[..states.len() * width], states.len(), numbers);
+    }
+}
+
 /// All states.
 struct All<'a, 's, 'f, T> {
     model: &'a Model,
@@ -185,14 +319,7 @@ impl<T: Rows> Task for All<'_, '_, '_, T> {
         let mut first = 0;
         while first < states.len() {
             let here = T::COUNT.min(states.len() - first);
-            for which in 0..3 {
-                let numbers = &mut room.state[which][..];
-                let width = numbers.len();
-                for (row, state) in rows.chunks_exact_mut(width.max(1)).zip(&states[first..first + here]) {
-                    row.copy_from_slice(state[which]);
-                }
-                T::read(&rows[..here * width], here, numbers);
-            }
+            read(&mut room.state, rows, &states[first..first + here]);
             let found = &mut found[first..first + here];
             let [q, v, a] = &room.state;
             room.kinematics.update_velocity_of_moving(model, q, v, &sought.moves);
@@ -379,6 +506,77 @@ mod tests {
                 for level in SimdLevel::ALL.into_iter().filter(|level| level.available().is_ok()) {
                     assert_eq!(bits(&of(level)), bits(&alone), "{level}, seed {seed}, {count} states");
                 }
+            }
+        }
+    }
+
+    /// Weighed in one pass over the links, rows have in sum what they have one by one.
+    #[test]
+    fn what_is_weighed_is_the_sum_of_the_rows() {
+        let count = 2;
+        for seed in 0..18 {
+            let random = &mut Random::of(100 + seed);
+            let model = robot(1 + seed as usize % 9, random);
+            let n = model.nv();
+            let states: Vec<[Vec<f64>; 3]> = (0..5)
+                .map(|_| {
+                    let mut numbers = || (0..n).map(|_| 2.0 * random.share() - 1.0).collect::<Vec<f64>>();
+                    let v = numbers();
+                    [model.integrate(&model.neutral(), &numbers()), v, numbers()]
+                })
+                .collect();
+            let asked = || sought(&model, &mut Random::of(seed));
+            let Sought { moves, .. } = asked();
+            // What stands still has no velocity.
+            let states: Vec<[Vec<f64>; 3]> = states
+                .into_iter()
+                .map(|[q, mut v, mut a]| {
+                    (0..n).filter(|k| !moves[*k]).for_each(|k| (v[k], a[k]) = (0.0, 0.0));
+                    [q, v, a]
+                })
+                .collect();
+            let (width, sums) = (asked().weights(count), asked().sums(count));
+            let changes = asked().changes();
+            let weights: Vec<f64> = (0..states.len() * width).map(|_| 2.0 * random.share() - 1.0).collect();
+            let mut expected = vec![0.0; sums];
+            for ([_, v, _], (row, found)) in
+                states.iter().zip(weights.chunks(width).zip(all(&model, asked(), SimdLevel::Baseline, &states)))
+            {
+                let (d_q, efforts) = (&found[..n * n], &found[3 * n * n..][..n * changes]);
+                let of_lines = &found[3 * n * n + n * changes + 4..];
+                for (m, b) in (0..count).flat_map(|m| (0..n).filter(|b| moves[*b]).map(move |b| (m, b))) {
+                    let weight = row[b * count + m];
+                    for k in (0..n).filter(|k| !moves[*k]) {
+                        expected[k * count + m] += weight * d_q[b * n + k];
+                        for line in 0..2 {
+                            let own = &row[n * count + line * (2 * count + 1)..];
+                            let second = of_lines[4 * n + line * n * n + b * n + k];
+                            expected[k * count + m] += (own[count + m] * v[b] + own[2 * count] * weight) * second;
+                        }
+                    }
+                    for change in 0..changes {
+                        expected[(n + change) * count + m] += weight * efforts[b * changes + change];
+                    }
+                }
+                for (m, k) in (0..count).flat_map(|m| (0..n).filter(|k| !moves[*k]).map(move |k| (m, k))) {
+                    for line in 0..2 {
+                        let own = &row[n * count + line * (2 * count + 1)..];
+                        expected[k * count + m] += own[m] * of_lines[2 * line * n + k];
+                    }
+                }
+            }
+            let largest = expected.iter().fold(1.0, |largest: f64, x| largest.max(x.abs()));
+            let mut bits = None;
+            for level in SimdLevel::ALL.into_iter().filter(|level| level.available().is_ok()) {
+                let mut own = vec![0.0; sums];
+                let mut abreast = Abreast::at(&model, asked(), level);
+                let states: Vec<State> = states.iter().map(|state| state.each_ref().map(Vec::as_slice)).collect();
+                abreast.weigh(&model, &states, &Weights { count, rows: &weights }, &mut own);
+                for (own, expected) in own.iter().zip(&expected) {
+                    assert!((own - expected).abs() < 1e-12 * largest, "seed {seed}, {level}: {own} for {expected}");
+                }
+                let found: Vec<u64> = own.iter().map(|x| x.to_bits()).collect();
+                assert_eq!(*bits.get_or_insert_with(|| found.clone()), found, "seed {seed}, {level}");
             }
         }
     }

@@ -40,7 +40,7 @@ mod workspace;
 
 pub use aba::{aba, aba_into};
 pub use aba_derivatives::{AbaDerivatives, aba_derivatives, aba_derivatives_into};
-pub(crate) use abreast::{Abreast, Found, Sought};
+pub(crate) use abreast::{Abreast, Found, Sought, Weights, weigh_measure};
 pub use centroidal::{centroidal_matrix, centroidal_matrix_into, centroidal_matrix_rate, centroidal_matrix_rate_into};
 pub use cholesky::{cholesky_into, cholesky_solve_into, inverse_from_cholesky_into, mass_inverse, mass_inverse_into};
 pub use christoffel::{christoffel, christoffel_into};

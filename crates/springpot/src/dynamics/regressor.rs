@@ -83,19 +83,47 @@ pub(crate) fn add_inertia_efforts<T: Scalar>(
     wanted: impl Fn(usize) -> bool,
     (efforts, count, first): (&mut [T], usize, usize),
 ) {
-    let link = kinematics.link(joint + 1);
-    let arm = link.translation - reference(kinematics);
     let Some(last) = model.degrees_of(joint).last() else { return };
-    let velocity = inside(link, arm, workspace.velocity[joint + 1]);
-    let acceleration = inside(link, arm, workspace.acceleration[joint + 1]);
-    let (omega, alpha) = (velocity.angular, acceleration.angular);
-    let d = acceleration.linear + omega.cross(velocity.linear);
+    let link = LinkMotion::of(kinematics, workspace, joint);
     for k in [last].into_iter().chain(joint::carriers(model, last)) {
         let index = model.degrees()[k].index;
-        if !wanted(index) {
-            continue;
+        if wanted(index) {
+            link.add_along(workspace.axes.unit[k], changes, efforts[index * count + first..].iter_mut());
         }
-        let Motion { angular: e, linear: u } = inside(link, arm, workspace.axes.unit[k]);
+    }
+}
+
+/// How a link moves, in its own frame.
+pub(super) struct LinkMotion<'a, T> {
+    link: &'a Placement<T>,
+    /// From the reference point.
+    arm: Vec3<T>,
+    omega: Vec3<T>,
+    alpha: Vec3<T>,
+    /// a + ω × v.
+    d: Vec3<T>,
+}
+
+impl<'a, T: Scalar> LinkMotion<'a, T> {
+    /// Of the link of `joint`, with the workspace of [`add_inertia_efforts`].
+    #[inline(always)]
+    pub(super) fn of(kinematics: &'a Kinematics<T>, workspace: &Workspace<T>, joint: usize) -> Self {
+        let link = kinematics.link(joint + 1);
+        let arm = link.translation - reference(kinematics);
+        let velocity = inside(link, arm, workspace.velocity[joint + 1]);
+        let acceleration = inside(link, arm, workspace.acceleration[joint + 1]);
+        let (omega, alpha) = (velocity.angular, acceleration.angular);
+        Self { link, arm, omega, alpha, d: acceleration.linear + omega.cross(velocity.linear) }
+    }
+
+    /// Adds what the link with each of these inertias asks for along a motion about the reference point to as many numbers.
+    #[inline(always)]
+    pub(super) fn add_along<'e>(&self, along: Motion<T>, changes: &[Inertia], efforts: impl Iterator<Item = &'e mut T>)
+    where
+        T: 'e,
+    {
+        let Self { link, arm, omega, alpha, d } = *self;
+        let Motion { angular: e, linear: u } = inside(link, arm, along);
         let (of_mass, of_moment) = (u.dot(d), u.cross(alpha) + omega.cross(omega.cross(u)) + d.cross(e));
         let (Vec3([ex, ey, ez]), Vec3([ax, ay, az])) = (e, alpha);
         let (Vec3([wx, wy, wz]), Vec3([ox, oy, oz])) = (e.cross(omega), omega);
@@ -103,7 +131,7 @@ pub(crate) fn add_inertia_efforts<T: Scalar>(
         let xy = ex * ay + ey * ax + wx * oy + wy * ox;
         let xz = ex * az + ez * ax + wx * oz + wz * ox;
         let yz = ey * az + ez * ay + wy * oz + wz * oy;
-        for (effort, change) in efforts[index * count + first..].iter_mut().zip(changes) {
+        for (effort, change) in efforts.zip(changes) {
             let Inertia { mass, first_moment, rotational: j } = Inertia::from_f64(change);
             let turned = j.xx * xx + j.yy * yy + j.zz * zz + j.xy * xy + j.xz * xz + j.yz * yz;
             *effort += mass * of_mass + first_moment.dot(of_moment) + turned;

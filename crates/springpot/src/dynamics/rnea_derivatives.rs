@@ -7,7 +7,7 @@ use super::kinematics::Kinematics;
 use super::moments::motions;
 use super::workspace::Workspace;
 use crate::model::Model;
-use crate::spatial::{Force, Scalar};
+use crate::spatial::{Force, Motion, Scalar, Vec3};
 
 /// Derivatives of τ = RNEA(q, v, a), each nv × nv, row-major: row b belongs to τ_b, column c to the variable with index c.
 #[derive(Debug, Clone, PartialEq)]
@@ -180,6 +180,101 @@ fn differentiate<T: Scalar>(
     }
     for (k, &rotor) in model.felt_rotors().iter().enumerate() {
         d_a[k * n + k] += T::from_f64(rotor);
+    }
+}
+
+/// What weights of efforts carry from link to link, M sets of weights side by side: of every link in turn (the world first) M numbers.
+#[derive(Debug)]
+pub(super) struct Weighed<T> {
+    /// Σ J_b μ_b of the degrees that carry a link.
+    pub(super) motions: Vec<Motion<T>>,
+    /// Σ I_c J_c μ_c of the degrees from a link on, and what sways with them, Σ 2 B_cᵀ J_c μ_c.
+    pub(super) momenta: Vec<Force<T>>,
+    swaying: Vec<Vec3<T>>,
+}
+
+impl<T> Weighed<T> {
+    #[inline(always)]
+    pub(super) fn of_nothing() -> Self {
+        Self { motions: Vec::new(), momenta: Vec::new(), swaying: Vec::new() }
+    }
+}
+
+/// Σ_b μ_b ∂τ_b/∂q_c of a robot of which joints stand still but where `moves` says so, for the velocities c that stand still, added to M numbers each in
+/// `by_place`; μ has M numbers for each velocity, of which those that move count. As [`rnea_derivatives_of_moving`] contracted, in one pass over the links.
+#[inline(always)]
+pub(super) fn weigh_places<T: Scalar>(
+    model: &Model,
+    kinematics: &Kinematics<T>,
+    a: &[T],
+    (moves, workspace): (&[bool], &mut Workspace<T>),
+    (weights, count): (&[T], usize),
+    weighed: &mut Weighed<T>,
+    by_place: &mut [T],
+) {
+    let n = model.nv();
+    if n == 0 {
+        return;
+    }
+    motions(model, kinematics, Some(&a[..n]), workspace, |velocity| moves[velocity]);
+    let (ws, degrees, links) = (workspace, model.degrees(), model.joint_count() + 1);
+    weighed.motions.clear();
+    weighed.motions.resize(links * count, Motion::ZERO);
+    weighed.momenta.clear();
+    weighed.momenta.resize(links * count, Force::ZERO);
+    weighed.swaying.clear();
+    weighed.swaying.resize(links * count, Vec3::ZERO);
+    for j in 0..model.joint_count() {
+        let parent = model.parent_link(j);
+        for m in 0..count {
+            let mut motion = weighed.motions[parent * count + m];
+            for k in model.degrees_of(j).filter(|k| moves[degrees[*k].index]) {
+                motion += ws.axes.unit[k] * weights[degrees[k].index * count + m];
+            }
+            weighed.motions[(j + 1) * count + m] = motion;
+        }
+    }
+    let two = T::from_f64(2.0);
+    for j in (0..model.joint_count()).rev() {
+        let (inner, outer) = ws.composite.split_at_mut(j);
+        let (inner_moving, outer_moving) = ws.body_coriolis.split_at_mut(j);
+        let (inertia, moving, load) = (&outer[0], &outer_moving[0], ws.force[j + 1]);
+        let parent = model.parent_link(j);
+        for k in model.degrees_of(j) {
+            let (own, index) = (ws.axes.unit[k], degrees[k].index);
+            if moves[index] {
+                let (momentum, swaying) = (*inertia * own, moving.transposed_times(own) * two);
+                for m in 0..count {
+                    let (weight, at) = (weights[index * count + m], (j + 1) * count + m);
+                    weighed.momenta[at] += momentum * weight;
+                    weighed.swaying[at] += swaying * weight;
+                }
+                continue;
+            }
+            let (rate, second) = (ws.axes.rate[k], ws.axes.second_rate[k]);
+            let felt = if joint::is_shift(&degrees[k]) {
+                let linear = second.linear * inertia.mass;
+                let angular = inertia.first_moment.cross(second.linear) + own.linear.cross(load.linear);
+                Force { linear, angular }
+            } else {
+                *inertia * second + moving.times(rate.angular) * two + own.cross_force(load)
+            };
+            for m in 0..count {
+                let at = (j + 1) * count + m;
+                let outer = second.dot(weighed.momenta[at]) + rate.angular.dot(weighed.swaying[at]);
+                by_place[index * count + m] += weighed.motions[parent * count + m].dot(felt) + outer;
+            }
+        }
+        if parent > 0 {
+            inner[parent - 1] += *inertia;
+            inner_moving[parent - 1] += *moving;
+            ws.force[parent] += load;
+        }
+        for m in 0..count {
+            let (momentum, swaying) = (weighed.momenta[(j + 1) * count + m], weighed.swaying[(j + 1) * count + m]);
+            weighed.momenta[parent * count + m] += momentum;
+            weighed.swaying[parent * count + m] += swaying;
+        }
     }
 }
 

@@ -21,7 +21,7 @@ use super::node::Node;
 use super::solve::Solve;
 use crate::collocation::STAGES;
 use crate::dynamics::{Abreast, Kinematics, RneaDerivatives, Sought, Workspace};
-use crate::elements::{Measure, MemoryRange};
+use crate::elements::MemoryRange;
 use crate::law::past::Begun;
 use crate::law::variation::{LawVariation, PointVariation, StepVariation};
 use crate::law::{Network, Response, Start};
@@ -29,15 +29,14 @@ use crate::linalg::columns::add;
 use crate::observe::Quantity;
 use crate::system::sensitivity::{Seed, Sensitivity, SensitivityError};
 use crate::system::{Motion, System};
+use adjoint::{Alone, Narrow, SolvedStep, lines};
 pub(crate) use adjoint::{Backwards, Endings, Entries, Recording, Starts};
-use adjoint::{Narrow, SolvedStep};
 use energies::Works;
 pub(crate) use found::Found;
 use inertias::Inertias;
 use one_node::OneSize;
 pub(crate) use one_node::{STAGE, Told};
 use saltation::Saltation;
-use seen::felt;
 use singular::Singular;
 use sizes::Sizes;
 pub(crate) use sizes::{StepErrors, TANGENTS};
@@ -97,6 +96,8 @@ pub(crate) struct Room {
     /// The step at hand, where no column is followed through it, and how much the last one kept.
     solved: Option<Box<SolvedStep>>,
     kept: usize,
+    /// The robot of the run at the nodes of such steps.
+    alone: Option<Box<Alone>>,
 }
 
 /// How often what changes of temperatures is found together with what changes of the motion.
@@ -160,6 +161,35 @@ pub(crate) struct NodeVariation {
     efforts: Vec<f64>,
 }
 
+impl NodeVariation {
+    /// Of a robot at `start`, for so many parameters, `efforts` numbers of what they ask of the velocities.
+    fn new(System { model, elements, .. }: &System, start: &[f64], (count, efforts): (usize, usize)) -> Self {
+        let n = model.nv();
+        let zeros = || vec![0.0; n * count];
+        Self {
+            t: 0.0,
+            kinematics: Kinematics::new(model),
+            slopes: RneaDerivatives::new(model),
+            q_now: start.to_vec(),
+            v_now: vec![0.0; n],
+            a_now: vec![0.0; n],
+            readings: vec![[0.0; 2]; elements.len()],
+            gradients: elements.iter().map(|_| [vec![0.0; n], vec![0.0; n]]).collect(),
+            hessians: vec![vec![0.0; n * n]; elements.len()],
+            q: zeros(),
+            v: zeros(),
+            a: zeros(),
+            explicit: zeros(),
+            efforts: vec![0.0; efforts],
+        }
+    }
+
+    /// Number of velocities.
+    pub(crate) fn nv(&self) -> usize {
+        self.v_now.len()
+    }
+}
+
 impl Variation {
     /// Of a run of `system`; `has_fixed_steps`: in steps of one size.
     ///
@@ -192,33 +222,11 @@ impl Variation {
             Motion::Given(_) => model.neutral(),
         };
         let inertias = Inertias::of(by);
-        let line = |(e, measure): (usize, &Measure)| match measure {
-            Measure::Line(line) => Some((e, [line.from, line.to])),
-            _ => None,
-        };
-        let lines: Vec<_> =
-            extended.elements.iter().map(|element| &element.measure).enumerate().filter_map(line).collect();
+        let lines = lines(&extended);
         let moves = (0..model.nv()).map(|k| own_v.contains(&k)).collect();
         let stands = control.is_some() || lines.len() < extended.elements.len();
         let abreast = Abreast::new(model, Sought { moves, links: inertias.links(), fields: inertias.fields(), lines });
         let efforts = abreast.sought.changes() * model.nv();
-        let zeros = || vec![0.0; model.nv() * count];
-        let node = || NodeVariation {
-            t: 0.0,
-            kinematics: Kinematics::new(model),
-            slopes: RneaDerivatives::new(model),
-            q_now: start.clone(),
-            v_now: vec![0.0; model.nv()],
-            a_now: vec![0.0; model.nv()],
-            readings: vec![[0.0; 2]; extended.elements.len()],
-            gradients: extended.elements.iter().map(|_| [vec![0.0; model.nv()], vec![0.0; model.nv()]]).collect(),
-            hessians: vec![vec![0.0; model.nv() * model.nv()]; extended.elements.len()],
-            q: zeros(),
-            v: zeros(),
-            a: zeros(),
-            explicit: zeros(),
-            efforts: vec![0.0; efforts],
-        };
         let element = |(e, inputs): (usize, usize)| {
             let mut rest = vec![0.0; count];
             let mut moves_inputs = control.iter().flat_map(|control| control.inputs()).any(|(own, _)| own == e);
@@ -266,7 +274,7 @@ impl Variation {
             placed,
             inertias,
             pushes,
-            nodes: std::array::from_fn(|_| node()),
+            nodes: std::array::from_fn(|_| NodeVariation::new(&extended, &start, (count, efforts))),
             sizes: Sizes::new(by, model.nv(), extended.elements.len()),
             singular: Singular::new(extended.elements.len(), model.nv(), count),
             room: Room {
@@ -277,6 +285,7 @@ impl Variation {
                 right: Vec::new(),
                 solved: None,
                 kept: 0,
+                alone: by.adjoint.is_some().then(|| Box::new(Alone::of(system))),
             },
             saltation: Saltation::new(count),
             works: Works::new(by, extended.elements.len(), has_fixed_steps),

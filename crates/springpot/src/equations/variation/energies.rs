@@ -1,7 +1,8 @@
 //! What parameters change of what is dissipated, supplied and lost since t = 0.
 
 use super::adjoint::keeps_works;
-use super::{ROW, Variation, at_start, felt, of_step};
+use super::seen::felt;
+use super::{ROW, Variation, at_start, of_step};
 use crate::collocation::{Nodes, STAGES};
 use crate::dynamics::{coriolis, gravity, kinetic_energy, potential_energy};
 use crate::equations::assembly::Equations;

@@ -55,6 +55,7 @@ impl Variation {
     /// Works out what changes at a row where the run is at `snapshot`, whose motion changes as node [`ROW`] has it: at θ of the step at hand, or
     /// between two.
     pub(crate) fn read(&mut self, equations: &Equations, theta: Option<f64>, snapshot: &Snapshot) {
+        self.catch_up(equations);
         let evaluation = &snapshot.evaluation;
         let force: Vec<f64> = (0..self.elements.len()).map(|e| snapshot.force(e)).collect();
         if let Some(before) = self.before_kick.as_ref().filter(|_| evaluation.t == 0.0) {

@@ -213,6 +213,7 @@ impl Variation {
         switches: impl Fn(Switched) -> bool,
         sources: &[Switched],
     ) {
+        self.catch_up(equations);
         let by = self.by.clone();
         let mut later = vec![0.0; self.count()];
         for (p, parameter) in by.parameters.iter().enumerate() {
@@ -330,6 +331,7 @@ impl Variation {
         [before, after]: [[&[f64]; 2]; 2],
         is_own: bool,
     ) -> Result<(), SensitivityError> {
+        self.catch_up(equations);
         let count = self.count();
         let ([v, a], [v_after, a_after]) = (before, after);
         let arrived = self.saltation.arrived.take();

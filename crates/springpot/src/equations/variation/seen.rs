@@ -2,12 +2,13 @@
 
 use super::{NodeVariation, Saltation, Variation};
 use crate::collocation::STAGES;
-use crate::dynamics::Found;
+use crate::dynamics::{Abreast, Found, Workspace};
 use crate::elements::Reading;
 use crate::equations::assembly::Equations;
 use crate::equations::node::Node;
 use crate::equations::resistance::add_tangents;
 use crate::model::{FrictionLaw, Model};
+use crate::system::System;
 use crate::system::sensitivity::Seed;
 
 impl Variation {
@@ -32,25 +33,7 @@ impl Variation {
     /// What those elements measure at node `i`, whose kinematics are worked out for that.
     fn measure_all(&mut self, i: usize, wanted: impl Fn(usize) -> bool) {
         let Self { system, own_v, nodes, room, .. } = self;
-        let (model, node, moves) = (&system.model, &mut nodes[i], &room.abreast.sought.moves);
-        node.kinematics.update_velocity_of_moving(model, &node.q_now, &node.v_now, moves);
-        let n = model.nv();
-        let measured = node.gradients.iter_mut().zip(&mut node.hessians).zip(&mut node.readings);
-        for (e, (element, (([gradient, bend], kept), told))) in system.elements.iter().zip(measured).enumerate() {
-            if !wanted(e) {
-                continue;
-            }
-            let mut reading = Reading::default();
-            element.measure.read_into(model, &node.kinematics, gradient, &mut reading);
-            *told = [reading.coordinate, reading.rate];
-            element.measure.hessian_of_moving(model, &node.kinematics, moves, &mut room.workspace, kept);
-            // y'_b = Σ_a ∂(∂y/∂q_a)/∂q_b v_a.
-            bend.fill(0.0);
-            for &k in own_v.iter() {
-                let (line, v) = (&kept[k * n..(k + 1) * n], node.v_now[k]);
-                bend.iter_mut().zip(line).for_each(|(bend, h)| *bend += h * v);
-            }
-        }
+        nodes[i].measure_all((system, own_v), &room.abreast.sought.moves, &mut room.workspace, wanted);
     }
 
     /// Looks at node `i`, where the elements pull with `force`, and sees the slopes there, and what changes where the motion stays.
@@ -70,13 +53,7 @@ impl Variation {
             self.look_at_inputs(i, at.t);
         }
         let Self { system, nodes: [_, stages @ .., _], room, .. } = self;
-        let (mut states, mut found) = (Vec::with_capacity(STAGES), Vec::with_capacity(STAGES));
-        for stage in stages {
-            let NodeVariation { q_now, v_now, a_now, slopes, efforts, readings, gradients, hessians, .. } = stage;
-            states.push([&q_now[..], v_now, a_now]);
-            found.push(Found { slopes, efforts, readings, gradients, hessians });
-        }
-        room.abreast.see(&system.model, &states, &mut found);
+        see_all(&mut room.abreast, &system.model, stages);
         let elements = self.elements.len();
         for (i, at) in (1..).zip(at) {
             if self.room.stands {
@@ -92,15 +69,8 @@ impl Variation {
         let Self { by, system, own_v, nodes, saltation, inertias, pushes, one_size, .. } = self;
         let Saltation { held, .. } = saltation;
         let (model, node, count) = (&system.model, &mut nodes[i], by.parameters.len());
-        let (slopes, n) = (&mut node.slopes, model.nv());
-        for (force, hessian) in force.iter().zip(&node.hessians).filter(|(force, _)| **force != 0.0) {
-            for &row in own_v.iter() {
-                let line = row * n..(row + 1) * n;
-                let bent = hessian[line.clone()].iter();
-                slopes.d_q[line].iter_mut().zip(bent).for_each(|(slope, bent)| *slope += force * bent);
-            }
-        }
-        add_tangents(system, &node.v_now, &mut slopes.d_v);
+        let n = model.nv();
+        node.pull_and_resist((system, own_v), force);
         own_v.iter().for_each(|k| node.explicit[k * count..(k + 1) * count].fill(0.0));
         for (velocity, by) in held.drives() {
             let row = own_v[velocity] * count;
@@ -109,28 +79,19 @@ impl Variation {
         for &(p, which) in pushes.iter() {
             let mut add = |k: usize, value: f64| node.explicit[k * count + p] += value;
             match &by.parameters[p].seeds[which] {
-                Seed::Drive { velocity, by } if held.drive(*velocity).is_none() => {
-                    add(own_v[*velocity], -by.value(at.t));
+                Seed::Drive { velocity, .. } if held.drive(*velocity).is_some() => {}
+                Seed::Friction { joint, by } if model.friction_laws()[*joint] == FrictionLaw::Sticking => {
+                    let (k, ratio, _) = felt(model, *joint, &node.v_now);
+                    let own = own_v.iter().position(|own| *own == k);
+                    let direction = |own: usize| match one_size {
+                        Some(one_size) => one_size.sliding(i, own, at.v[own]),
+                        None => equations.sliding(own, at.v[own]),
+                    };
+                    add(k, by * ratio.abs() * own.map_or(0.0, direction));
                 }
-                Seed::Damping { joint, by } => {
-                    let (k, ratio, speed) = felt(model, *joint, &node.v_now);
-                    add(k, by * ratio * speed);
+                seed => {
+                    pushed(model, own_v, seed, (at.t, &node.v_now)).into_iter().for_each(|(k, value)| add(k, value))
                 }
-                Seed::Friction { joint, by } => {
-                    let (k, ratio, speed) = felt(model, *joint, &node.v_now);
-                    match model.friction_laws()[*joint] {
-                        FrictionLaw::Smooth { speed: width } => add(k, by * ratio * (speed / width).tanh()),
-                        FrictionLaw::Sticking => {
-                            let own = own_v.iter().position(|own| *own == k);
-                            let direction = |own: usize| match one_size {
-                                Some(one_size) => one_size.sliding(i, own, at.v[own]),
-                                None => equations.sliding(own, at.v[own]),
-                            };
-                            add(k, by * ratio.abs() * own.map_or(0.0, direction));
-                        }
-                    }
-                }
-                _ => {}
             }
         }
         let NodeVariation { explicit, efforts, a_now, .. } = node;
@@ -140,6 +101,81 @@ impl Variation {
             inertias.parameters().zip(own).for_each(|(p, effort)| sums[p] += effort);
         }
         inertias.rotors.iter().for_each(|(p, k, rotor)| explicit[k * count + p] += rotor * a_now[*k]);
+    }
+}
+
+/// Sees all nodes side by side, where the robot stands as they have it.
+pub(super) fn see_all(abreast: &mut Abreast, model: &Model, nodes: &mut [NodeVariation]) {
+    let (mut states, mut found) = (Vec::with_capacity(nodes.len()), Vec::with_capacity(nodes.len()));
+    for node in nodes {
+        let NodeVariation { q_now, v_now, a_now, slopes, efforts, readings, gradients, hessians, .. } = node;
+        states.push([&q_now[..], v_now, a_now]);
+        found.push(Found { slopes, efforts, readings, gradients, hessians });
+    }
+    abreast.see(model, &states, &mut found);
+}
+
+impl NodeVariation {
+    /// What those elements measure, where the robot stands as the node has it and the velocities `own_v` move; kinematics are worked out for that.
+    pub(super) fn measure_all(
+        &mut self,
+        (system, own_v): (&System, &[usize]),
+        moves: &[bool],
+        workspace: &mut Workspace,
+        wanted: impl Fn(usize) -> bool,
+    ) {
+        let (node, model) = (self, &system.model);
+        node.kinematics.update_velocity_of_moving(model, &node.q_now, &node.v_now, moves);
+        let n = model.nv();
+        let measured = node.gradients.iter_mut().zip(&mut node.hessians).zip(&mut node.readings);
+        for (e, (element, (([gradient, bend], kept), told))) in system.elements.iter().zip(measured).enumerate() {
+            if !wanted(e) {
+                continue;
+            }
+            let mut reading = Reading::default();
+            element.measure.read_into(model, &node.kinematics, gradient, &mut reading);
+            *told = [reading.coordinate, reading.rate];
+            element.measure.hessian_of_moving(model, &node.kinematics, moves, workspace, kept);
+            // y'_b = Σ_a ∂(∂y/∂q_a)/∂q_b v_a.
+            bend.fill(0.0);
+            for &k in own_v {
+                let (line, v) = (&kept[k * n..(k + 1) * n], node.v_now[k]);
+                bend.iter_mut().zip(line).for_each(|(bend, h)| *bend += h * v);
+            }
+        }
+    }
+
+    /// Adds to the slopes what elements that pull with `force` and the resistances of joints have in them.
+    pub(super) fn pull_and_resist(&mut self, (system, own_v): (&System, &[usize]), force: &[f64]) {
+        let (slopes, n) = (&mut self.slopes, system.model.nv());
+        for (force, hessian) in force.iter().zip(&self.hessians).filter(|(force, _)| **force != 0.0) {
+            for &row in own_v {
+                let line = row * n..(row + 1) * n;
+                let bent = hessian[line.clone()].iter();
+                slopes.d_q[line].iter_mut().zip(bent).for_each(|(slope, bent)| *slope += force * bent);
+            }
+        }
+        add_tangents(system, &self.v_now, &mut slopes.d_v);
+    }
+}
+
+/// What a seed adds to the equation of motion of which velocity of the extended robot, which moves with v at time t: of signals, of damping, and of
+/// friction that does not stick.
+pub(super) fn pushed(model: &Model, own_v: &[usize], seed: &Seed, (t, v): (f64, &[f64])) -> Option<(usize, f64)> {
+    match seed {
+        Seed::Drive { velocity, by } => Some((own_v[*velocity], -by.value(t))),
+        Seed::Damping { joint, by } => {
+            let (k, ratio, speed) = felt(model, *joint, v);
+            Some((k, by * ratio * speed))
+        }
+        Seed::Friction { joint, by } => {
+            let (k, ratio, speed) = felt(model, *joint, v);
+            match model.friction_laws()[*joint] {
+                FrictionLaw::Smooth { speed: width } => Some((k, by * ratio * (speed / width).tanh())),
+                FrictionLaw::Sticking => None,
+            }
+        }
+        _ => None,
     }
 }
 

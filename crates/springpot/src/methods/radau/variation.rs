@@ -8,7 +8,9 @@ use super::estimate::raw;
 use super::step::{EstimateScratch, RadauStep};
 use crate::collocation::radau::{A, A_SQUARED, ESTIMATE, GAMMA};
 use crate::collocation::{RADAU_NODES, STAGES, TABLEAU, integrals};
-use crate::equations::{Equations, Found, NodeVariation, ROW, Recording, StepErrors, TANGENTS, Variation};
+use crate::equations::{
+    Equations, Found, Node, NodeVariation, Origin, ROW, Recording, StepErrors, TANGENTS, Variation,
+};
 use crate::linalg::Lu;
 use crate::linalg::columns::{add, put};
 use crate::model::{FreeTurn, Turned, add_turned};
@@ -106,17 +108,22 @@ impl RadauStep {
         h: f64,
         t_end: f64,
     ) -> bool {
-        self.see_stages(equations, variation, h, t_end);
-        let free = variation.of_run(equations.free());
-        let fill = |variation: &Variation, matrix: &mut [f64]| {
-            self.fill_matrix(equations, variation, (&free, h), matrix);
+        let times = [self.origin.t, self.origin.t + RADAU_NODES[0] * h, self.origin.t + RADAU_NODES[1] * h, t_end];
+        let Origin { q, v, a, .. } = &self.origin;
+        let nodes = std::array::from_fn(|i| match i {
+            0 => Node { t: times[0], q, v, a },
+            _ => self.stages[i - 1].node(times[i]),
+        });
+        let fill = |variation: &Variation, stages: &[NodeVariation], matrix: &mut [f64]| {
+            self.fill_matrix(equations, (variation, stages), (equations.free(), h), matrix);
         };
-        recording.keep_step(variation, equations, (h, t_end), fill)
+        recording.keep_step(variation, equations, (h, nodes), fill)
     }
 
     /// Works out what changes over the step that was solved, of size `h`, where signals at its end are those at `t_end`; false where nothing does
     /// so in one way.
     pub(super) fn vary(&mut self, equations: &Equations, variation: &mut Variation, h: f64, t_end: f64) -> bool {
+        variation.catch_up(equations);
         variation.share_forces(equations);
         let free = variation.of_run(equations.free());
         self.see_stages(equations, variation, h, t_end);
@@ -276,8 +283,11 @@ impl RadauStep {
         let (count, own) = (variation.count(), free.len());
         let size = STAGES * own;
         let mut solve = std::mem::take(&mut variation.room.solve);
-        let regular =
-            !found.is_first() || solve.factor(size, |matrix| self.fill_matrix(equations, variation, (free, h), matrix));
+        let regular = !found.is_first()
+            || solve.factor(size, |matrix| {
+                let [_, stages @ .., _] = &variation.nodes;
+                self.fill_matrix(equations, (variation, stages), (free, h), matrix);
+            });
         if regular {
             let mut right = std::mem::take(&mut variation.room.right);
             right.clear();
@@ -310,18 +320,18 @@ impl RadauStep {
         regular && !found.fails()
     }
 
-    /// J into zeros.
+    /// J into zeros, where the stages were seen as `stages` have it, of which velocities `free` are.
     pub(super) fn fill_matrix(
         &self,
         equations: &Equations,
-        variation: &Variation,
+        (variation, stages): (&Variation, &[NodeVariation]),
         (free, h): (&[usize], f64),
         matrix: &mut [f64],
     ) {
-        let (n, own) = (variation.nv(), free.len());
+        let (n, own) = (stages[0].nv(), free.len());
         let size = STAGES * own;
         for (i, lines) in matrix.chunks_exact_mut(own * size).enumerate() {
-            let slopes = &variation.nodes[i + 1].slopes;
+            let slopes = &stages[i].slopes;
             for (line, &row) in lines.chunks_exact_mut(size).zip(free) {
                 let [by_q, by_v, by_a] = [&slopes.d_q, &slopes.d_v, &slopes.d_a].map(|by| &by[row * n..(row + 1) * n]);
                 for (c, &column) in free.iter().enumerate() {
@@ -336,7 +346,7 @@ impl RadauStep {
         let (mut strokes, mut rates, mut force) = (vec![0.0; STAGES * size], vec![0.0; STAGES * size], vec![0.0; size]);
         for e in 0..variation.elements.len() {
             let response = variation.response(equations, e);
-            let slopes = [1, 2, 3].map(|m| &variation.nodes[m].gradients[e]);
+            let slopes = [0, 1, 2].map(|m| &stages[m].gradients[e]);
             for (m, [g, y]) in slopes.iter().enumerate() {
                 for j in 0..STAGES {
                     let (twice, once, from) = (h * h * A_SQUARED[m][j], h * A[m][j], m * size + j * own);

@@ -8,6 +8,7 @@
 //!
 //! Steps of plain laws and of motions that follow from forces have no need of columns: these keep their equations instead ([`SolvedStep`]).
 
+mod alone;
 mod back;
 mod blocks;
 mod endings;
@@ -16,7 +17,9 @@ mod room;
 mod step;
 mod tape;
 mod through;
+mod weighing;
 
+pub(super) use alone::{Alone, lines};
 pub(crate) use back::Backwards;
 pub(crate) use endings::Endings;
 pub(crate) use record::Recording;

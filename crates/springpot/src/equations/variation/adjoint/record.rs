@@ -1,11 +1,12 @@
 //! What is kept of each step, while the run goes on.
 
 use super::room::Columns;
-use super::step::Plan;
+use super::step::{POINTS, Plan};
 use super::tape::{Entries, Entry, Map, MemoryOfEntry, PIECES, Row, Starts};
 use crate::equations::assembly::Equations;
 use crate::equations::control::{OfSamples, Sampler};
-use crate::equations::variation::Variation;
+use crate::equations::node::Node;
+use crate::equations::variation::{NodeVariation, Variation};
 use crate::observe::{Quantity, Snapshot};
 use crate::system::System;
 use crate::system::sensitivity::{Sensitivity, SensitivityError};
@@ -132,14 +133,14 @@ impl Recording {
         numbers > 0 && self.starts.columns.iter().all(|(number, _)| (*number as usize) < numbers)
     }
 
-    /// Keeps such a step, whose stages were seen, of size h, at whose end signals are those at `t_end`; `fill` writes J into zeros. `false` where that is
-    /// singular.
+    /// Keeps such a step, of size h, which starts and has its stages there; `fill` writes J into zeros, of the stages as they were seen. `false` where that
+    /// is singular.
     pub(crate) fn keep_step(
         &self,
         variation: &mut Variation,
         equations: &Equations,
-        size: (f64, f64),
-        fill: impl FnOnce(&Variation, &mut [f64]),
+        size: (f64, [Node; POINTS]),
+        fill: impl FnOnce(&Variation, &[NodeVariation], &mut [f64]),
     ) -> bool {
         let Some(plan) = self.plan.get().and_then(Option::as_ref) else { return false };
         variation.keep_step(equations, (plan, &self.starts), size, fill)

@@ -5,9 +5,11 @@
 //! memories answer to strokes and rates at the nodes.
 
 use super::tape::{MemoryOfStep, Starts};
+use super::weighing::Changed;
 use crate::collocation::STAGES;
 use crate::equations::assembly::Equations;
-use crate::equations::variation::{ElementVariation, Variation};
+use crate::equations::node::Node;
+use crate::equations::variation::{ElementVariation, NodeVariation, Variation};
 use crate::fractional::{MemoryTangent, PortColumns};
 use crate::law::variation::{LawVariation, StepVariation};
 use crate::law::{Derivative, Network};
@@ -29,11 +31,8 @@ const LAGS: usize = 5;
 pub(super) struct Plan {
     /// Velocities, all of which follow from forces.
     pub(super) velocities: usize,
-    /// Velocities of the extended robot that stand for places; of those which one, parameter, by how much.
-    places: Vec<usize>,
-    pub(super) placed: Vec<(usize, usize, f64)>,
-    /// Parameters that change the equations of motion where the motion stays.
-    pub(super) explicit: Vec<usize>,
+    /// What parameters change of the robot.
+    pub(super) changed: Changed,
     pub(super) elements: Vec<ElementPlan>,
     /// Of each quantity of a row, whether it is a place, a velocity or an acceleration, and of which one; `None`: the time.
     pub(super) motion: Vec<Option<(usize, usize)>>,
@@ -50,11 +49,6 @@ pub(super) struct ElementPlan {
 }
 
 impl Plan {
-    /// Of places of geometry.
-    pub(super) fn places(&self) -> usize {
-        self.places.len()
-    }
-
     /// How many numbers the state has that go on through such a step.
     pub(super) fn numbers(&self) -> usize {
         3 * self.velocities + self.elements.iter().map(|element| KEPT * element.memories).sum::<usize>()
@@ -63,7 +57,7 @@ impl Plan {
     /// Parameters that change anything in a step.
     pub(super) fn each_parameter(&self) -> impl Iterator<Item = usize> + '_ {
         let of_elements = self.elements.iter().flat_map(|own| own.law.iter().chain(own.rest.iter().map(|(p, _)| p)));
-        self.explicit.iter().chain(of_elements).chain(self.placed.iter().map(|(_, p, _)| p)).copied()
+        self.changed.each_parameter().chain(of_elements.copied())
     }
 }
 
@@ -121,12 +115,12 @@ pub(crate) struct SolvedStep {
     /// How many numbers the state has in front of it.
     pub(super) state: usize,
     pub(super) h: f64,
-    /// When signals at its end are those there.
-    t_end: f64,
+    /// The stages; at the last one signals are those then.
+    pub(super) times: [f64; STAGES],
     /// Jᵀ.
     pub(super) transposed: Lu,
-    /// In the order in which they are read: of each stage its rows, by q and v, places, and explicitly by parameters; of each element at each node ∂y/∂q
-    /// and ∂y'/∂q, by velocities and places, and what forces and memories have by its columns.
+    /// In the order in which they are read: q, v and a of the start and of the stages; of each stage the forces of the elements; its rows by q and v; of each
+    /// element at each node ∂y/∂q and ∂y'/∂q, and what forces and memories have by its columns.
     pub(super) numbers: Vec<f64>,
     pub(super) memories: Vec<MemoryOfStep>,
     /// Rows in it, and where.
@@ -134,6 +128,23 @@ pub(crate) struct SolvedStep {
 }
 
 impl SolvedStep {
+    /// q, v and a at the start and at the stages.
+    pub(super) fn motion(&self) -> impl Iterator<Item = [&[f64]; 3]> {
+        let n = self.plan.velocities;
+        self.numbers[..POINTS * 3 * n].chunks_exact(3 * n).map(move |own| [0, 1, 2].map(|k| &own[k * n..(k + 1) * n]))
+    }
+
+    /// Forces of the elements at a stage.
+    pub(super) fn force(&self, stage: usize) -> &[f64] {
+        let elements = self.plan.elements.len();
+        &self.numbers[POINTS * 3 * self.plan.velocities + stage * elements..][..elements]
+    }
+
+    /// What was kept of equations, laws and memories.
+    pub(super) fn equations(&self) -> &[f64] {
+        &self.numbers[POINTS * 3 * self.plan.velocities + STAGES * self.plan.elements.len()..]
+    }
+
     pub(super) fn bytes(&self) -> usize {
         let matrix = STAGES * STAGES * self.plan.velocities * self.plan.velocities;
         size_of::<Self>()
@@ -171,15 +182,6 @@ impl Variation {
         if has_more {
             return None;
         }
-        let mut places: Vec<usize> = self.placed.iter().map(|(k, ..)| *k).collect();
-        places.sort_unstable();
-        places.dedup();
-        let place = |k: usize| places.binary_search(&k).expect("one of them");
-        let placed = self.placed.iter().map(|(k, p, by)| (place(*k), *p, *by)).collect();
-        let mut explicit: Vec<usize> = self.inertias.parameters().chain(self.pushes.iter().map(|(p, _)| *p)).collect();
-        explicit.extend(self.inertias.rotors.iter().map(|(p, ..)| *p));
-        explicit.sort_unstable();
-        explicit.dedup();
         let elements = self.elements.iter().enumerate().map(|(e, own)| {
             let rest = own.rest.iter().copied().enumerate().filter(|(_, by)| *by != 0.0).collect();
             let law: Vec<usize> = (0..parameters).filter(|p| self.law_by(e, *p).is_some()).collect();
@@ -195,7 +197,7 @@ impl Variation {
         });
         let motion = motion.collect();
         let elements = elements.collect();
-        Some(Plan { velocities: self.own_v.len(), places, placed, explicit, elements, motion })
+        Some(Plan { velocities: self.own_v.len(), changed: Changed::of(self), elements, motion })
     }
 
     /// Whether the step at hand waits to be gone back through, no column being followed through it.
@@ -205,7 +207,8 @@ impl Variation {
 
     /// Its columns are to be followed through it after all: when signals at its end are those there.
     pub(crate) fn follow_columns(&mut self) -> Option<f64> {
-        self.room.solved.take().map(|step| step.t_end)
+        let [.., t_end] = self.room.solved.take()?.times;
+        Some(t_end)
     }
 
     /// Whether all is as in the middle of a motion.
@@ -214,13 +217,14 @@ impl Variation {
         !is_singular && !self.is_about_to_change()
     }
 
-    /// Keeps what it takes to go back through the step at hand, whose stages were seen ([`super::Recording::keep_step`]); `fill` writes J into zeros. `false` where J is singular.
+    /// Keeps what it takes to go back through the step at hand, of size h, which starts and has its stages there ([`super::Recording::keep_step`]); `fill`
+    /// writes J into zeros. `false` where J is singular.
     pub(super) fn keep_step(
         &mut self,
         equations: &Equations,
         (plan, starts): (&Arc<Plan>, &Starts),
-        (h, t_end): (f64, f64),
-        fill: impl FnOnce(&Self, &mut [f64]),
+        (h, at): (f64, [Node; POINTS]),
+        fill: impl FnOnce(&Self, &[NodeVariation], &mut [f64]),
     ) -> bool {
         for (e, (plan, own)) in plan.elements.iter().zip(&mut self.elements).enumerate() {
             own.exact = equations.bank.exact_response(e);
@@ -239,33 +243,31 @@ impl Variation {
             narrow.forces = forces;
             lend(narrow.law.memories_mut(), own.law.memories_mut());
         }
-        let size = STAGES * plan.velocities;
+        let (n, elements) = (plan.velocities, plan.elements.len());
+        let Some(mut alone) = self.room.alone.take() else { return false };
+        alone.see(at, |e, i| self.response(equations, e).force[i]);
+        let (size, [_, stages @ ..]) = (STAGES * n, &alone.nodes);
         let mut transposed = Lu::default();
-        let regular = transposed.factor(size, |matrix| {
-            fill(self, matrix);
+        let is_regular = transposed.factor(size, |matrix| {
+            fill(self, stages, matrix);
             for row in 0..size {
                 (0..row).for_each(|column| matrix.swap(row * size + column, column * size + row));
             }
         });
-        if !regular {
-            return false;
+        let mut numbers = Vec::with_capacity(self.room.kept);
+        for NodeVariation { q_now, v_now, a_now, .. } in &alone.nodes {
+            [q_now, v_now, a_now].into_iter().for_each(|own| numbers.extend_from_slice(own));
         }
-        let (mut numbers, count, n) = (Vec::with_capacity(self.room.kept), self.count(), self.nv());
-        for node in &self.nodes[1..=STAGES] {
-            for row in &self.own_v {
-                let [d_q, d_v] = [&node.slopes.d_q, &node.slopes.d_v].map(|slopes| &slopes[row * n..(row + 1) * n]);
-                numbers.extend(self.own_v.iter().map(|k| d_q[*k]));
-                numbers.extend(self.own_v.iter().map(|k| d_v[*k]));
-                numbers.extend(plan.places.iter().map(|k| d_q[*k]));
-                let explicit = &node.explicit[row * count..(row + 1) * count];
-                numbers.extend(plan.explicit.iter().map(|p| explicit[*p]));
+        numbers.extend_from_slice(&alone.force[elements..]);
+        for NodeVariation { slopes, .. } in stages {
+            for row in 0..n {
+                numbers.extend_from_slice(&slopes.d_q[row * n..(row + 1) * n]);
+                numbers.extend_from_slice(&slopes.d_v[row * n..(row + 1) * n]);
             }
         }
         for (e, own) in self.elements.iter().enumerate() {
-            for node in &self.nodes[..=STAGES] {
-                for slopes in &node.gradients[e] {
-                    numbers.extend(self.own_v.iter().chain(&plan.places).map(|k| slopes[*k]));
-                }
+            for node in &alone.nodes {
+                node.gradients[e].iter().for_each(|slopes| numbers.extend_from_slice(slopes));
             }
             let (response, columns) = (self.response(equations, e), plan.elements[e].columns);
             let first = numbers.len();
@@ -277,11 +279,16 @@ impl Variation {
                 }
             }
         }
+        let [_, times @ ..] = at.map(|node| node.t);
+        self.room.alone = Some(alone);
+        if !is_regular {
+            return false;
+        }
         self.room.solved = Some(Box::new(SolvedStep {
             plan: plan.clone(),
             state: starts.numbers,
             h,
-            t_end,
+            times,
             transposed,
             numbers,
             memories: Vec::new(),
@@ -315,21 +322,41 @@ impl Variation {
             }
         }
         self.room.kept = step.numbers.len();
-        self.nodes.swap(0, STAGES);
-        let (count, mut column) = (self.count(), first);
+        let Self { nodes: [start, ..], own_v, elements, room, by, .. } = self;
+        let count = by.parameters.len();
+        let was_ahead = room.alone.as_mut().and_then(|alone| alone.ahead.replace(STAGES)).is_some();
+        let memories = elements.iter_mut().flat_map(|element| element.law.memories_mut());
+        if was_ahead {
+            // The ones stand there already.
+            memories.for_each(MemoryTangent::take_origin);
+            return Some(step);
+        }
+        let mut column = first;
         let mut stand = |block: &mut [f64]| {
             block.fill(0.0);
             block[column] = 1.0;
             column += 1;
         };
-        let Self { nodes: [start, ..], own_v, elements, .. } = self;
         for blocks in [&mut start.q, &mut start.v, &mut start.a] {
             own_v.iter().for_each(|k| stand(&mut blocks[k * count..(k + 1) * count]));
         }
-        let memories = elements.iter_mut().flat_map(|element| element.law.memories_mut());
-        memories.for_each(|memory| memory.kept_mut().into_iter().for_each(&mut stand));
-        self.stand_again(equations);
+        memories.for_each(|memory| {
+            memory.kept_mut().into_iter().for_each(&mut stand);
+            memory.take_origin();
+        });
         Some(step)
+    }
+
+    /// Sees where the step starts, behind steps that no columns were followed through.
+    pub(crate) fn catch_up(&mut self, equations: &Equations) {
+        let Some(mut alone) = self.room.alone.take() else { return };
+        if let Some(i) = alone.ahead.take() {
+            let (NodeVariation { t, q_now, v_now, a_now, .. }, elements) = (&alone.nodes[i], self.elements.len());
+            let at = Node { t: *t, q: q_now, v: v_now, a: a_now };
+            self.see(equations, 0, at, &alone.force[i * elements..(i + 1) * elements]);
+            (0..elements).for_each(|e| self.measure(e, 0));
+        }
+        self.room.alone = Some(alone);
     }
 }
 

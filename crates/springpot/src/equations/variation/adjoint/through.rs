@@ -2,6 +2,7 @@
 
 use super::back::Backwards;
 use super::step::{ElementPlan, KEPT, POINTS, SolvedStep};
+use super::weighing::Weighing;
 use crate::collocation::radau::{A, A_SQUARED};
 use crate::collocation::{RADAU_NODES, STAGES, TABLEAU, integrals};
 use crate::fractional::OfStep;
@@ -15,15 +16,15 @@ pub(super) struct Through {
     /// Of the columns of each element, and of one by what is unbalanced alone.
     columns: Vec<Vec<f64>>,
     again: Vec<f64>,
-    /// Of what is unbalanced at the stages, velocity by velocity, and of places.
+    /// Of what is unbalanced at the stages, velocity by velocity.
     unbalanced: Vec<f64>,
-    places: Vec<f64>,
     force: Vec<f64>,
     none: Vec<f64>,
     solve: [Vec<Block>; 2],
+    weighing: Option<Box<Weighing>>,
 }
 
-/// ∂y/∂q and ∂y'/∂q of an element at the start and at the stages, by velocities and places, and its forces at the stages by its columns.
+/// ∂y/∂q and ∂y'/∂q of an element at the start and at the stages, and its forces at the stages by its columns.
 #[derive(Clone, Copy)]
 struct OfElement<'a> {
     plan: &'a ElementPlan,
@@ -54,7 +55,7 @@ impl Backwards {
         let (count, plan, h) = (self.count, &*step.plan, step.h);
         let (n, size) = (plan.velocities, plan.velocities * count);
         let mut room = std::mem::take(&mut self.room);
-        let Through { nodes, columns, again, unbalanced, force, none, solve, .. } = &mut room;
+        let Through { nodes, columns, again, unbalanced, force, none, solve, weighing } = &mut room;
         nodes.iter_mut().flatten().for_each(|blocks| clear(blocks, size));
         clear(none, count);
         for (which, blocks) in nodes[STAGES].iter_mut().enumerate() {
@@ -63,9 +64,8 @@ impl Backwards {
         for (number, theta) in &step.rows {
             self.over_row((*number, *theta), step, nodes);
         }
-        let width = 2 * n + plan.places() + plan.explicit.len();
-        let (rows, of_elements) = step.numbers.split_at(STAGES * n * width);
-        let width_of = |plan_of: &ElementPlan| (2 * POINTS * (n + plan.places()), STAGES * plan_of.columns);
+        let (rows, of_elements) = step.equations().split_at(STAGES * n * 2 * n);
+        let width_of = |plan_of: &ElementPlan| (2 * POINTS * n, STAGES * plan_of.columns);
         let elements = || {
             plan.elements.iter().scan(of_elements, |rest, plan_of| {
                 let (slopes, forces) = width_of(plan_of);
@@ -121,9 +121,15 @@ impl Backwards {
             }
             own.hand_on(again, nodes, count);
             add(sums, 1.0, again);
-            self.of_element(step, own, sums);
+            self.of_element(own, sums);
         }
-        self.under(step, (rows, width), &mut room);
+        for (r, (row, by)) in rows.chunks_exact(2 * n).zip(unbalanced.chunks_exact(count)).enumerate() {
+            let ([q, v, _], (by_q, by_v)) = (&mut nodes[r / n + 1], row.split_at(n));
+            spread(q, by_q, by);
+            spread(v, by_v, by);
+        }
+        let weighing = weighing.get_or_insert_with(|| Box::new(Weighing::of(plan)));
+        weighing.weigh(step, (unbalanced, columns, count), &mut self.sum);
         self.go_to_start(step, &room);
         self.room = room;
     }
@@ -155,43 +161,15 @@ impl Backwards {
         }
     }
 
-    /// What counts of what is unbalanced at the stages counts so much of the motion there, of places and of parameters.
-    fn under(&mut self, step: &SolvedStep, (rows, width): (&[f64], usize), room: &mut Through) {
-        let (count, plan) = (self.count, &*step.plan);
-        let (n, Through { nodes, unbalanced, places, .. }) = (plan.velocities, room);
-        clear(places, plan.places() * count);
-        for (r, (row, by)) in rows.chunks_exact(width.max(1)).zip(unbalanced.chunks_exact(count)).enumerate() {
-            let [q, v, _] = &mut nodes[r / n + 1];
-            let (by_q, rest) = row.split_at(n);
-            let (by_v, rest) = rest.split_at(n);
-            let (by_places, explicit) = rest.split_at(plan.places());
-            spread(q, by_q, by);
-            spread(v, by_v, by);
-            spread(places, by_places, by);
-            for (p, value) in plan.explicit.iter().zip(explicit) {
-                add(&mut self.sum[p * count..][..count], *value, by);
-            }
-        }
-        for (place, p, by) in &plan.placed {
-            add(&mut self.sum[p * count..][..count], *by, &places[place * count..][..count]);
-        }
-    }
-
     /// What parameters have of the columns of an element.
-    fn of_element(&mut self, step: &SolvedStep, own: OfElement, by: &[f64]) {
-        let (count, plan) = (self.count, &*step.plan);
+    fn of_element(&mut self, own: OfElement, by: &[f64]) {
+        let count = self.count;
         for (p, column) in own.plan.law.iter().zip(own.plan.own()..) {
             add(&mut self.sum[p * count..][..count], 1.0, &by[column * count..][..count]);
         }
         for m in 0..POINTS {
-            let [strokes, rates] = [m, POINTS + m].map(|column| &by[column * count..][..count]);
-            let [gradient, bend] = own.slopes(m);
+            let strokes = &by[m * count..][..count];
             own.plan.rest.iter().for_each(|(p, rest)| add(&mut self.sum[p * count..][..count], *rest, strokes));
-            for (place, p, by) in &plan.placed {
-                let (sum, k) = (&mut self.sum[p * count..][..count], plan.velocities + place);
-                add(sum, gradient[k] * by, strokes);
-                add(sum, bend[k] * by, rates);
-            }
         }
     }
 
