@@ -516,7 +516,7 @@ pub(crate) struct FmuOptions {
 
 #[derive(Debug, Args)]
 pub(crate) struct InitOptions {
-    /// Robot (URDF file)
+    /// Robot (URDF or MJCF file)
     #[arg(value_name = "ROBOT")]
     pub(crate) robot: Option<PathBuf>,
     /// Let its root link float on a joint called floating_base
@@ -769,7 +769,7 @@ pub(crate) struct ModesOptions {
 
 #[derive(Debug, Args)]
 pub(crate) struct RobotOptions {
-    /// Robot: a URDF file (.urdf), or a scenario or its [robot] alone (.toml)
+    /// Robot: a URDF or MJCF file (.urdf, .xml), or a scenario or its [robot] alone (.toml)
     #[arg(value_name = "ROBOT")]
     pub(crate) file: PathBuf,
     /// Let the root link of a URDF file float on a joint called floating_base
@@ -778,7 +778,7 @@ pub(crate) struct RobotOptions {
     /// Give joints that mimic another one coordinates of their own
     #[arg(long)]
     pub(crate) ignore_mimic: bool,
-    /// Take inertias of a URDF file that no distribution of mass has as they are
+    /// Take inertias of a file that no distribution of mass has as they are
     #[arg(long)]
     pub(crate) accept_inertia: bool,
     /// Folder that is a package, or holds some, for package:// paths; may be given several times

@@ -59,7 +59,7 @@ fn pointed(severity: Severity, refusal: &Refusal) {
     });
 }
 
-/// Prints what is wrong with a URDF file on stderr, with the tag that it is about.
+/// Prints what is wrong with a robot's file on stderr, with the tag that it is about.
 pub(crate) fn description_refused(description_error: &DescriptionError) {
     let help = description_error.problem.is_of_no_mass().then(|| ACCEPT_INERTIA.to_owned());
     let alone = || show(&Shown::plain(Severity::Error, description_error.to_string(), help.clone()));

@@ -1,4 +1,4 @@
-//! The robot that a command is about, from a URDF file or from the `[robot]` of a scenario.
+//! The robot that a command is about, from a file of its own or from the `[robot]` of a scenario.
 
 use crate::arguments::RobotOptions;
 use crate::diagnostic;
@@ -15,7 +15,7 @@ const STANDARD_GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 /// A robot as it is described, and the model built of it.
 #[derive(Debug)]
 pub(crate) struct Robot {
-    /// Its name in the URDF file, or else the stem of the file.
+    /// Its name in its file, or else the stem of the file.
     pub(crate) name: String,
     pub(crate) model: Arc<Model>,
     /// In the order of [`Model::body_names`].
@@ -24,7 +24,7 @@ pub(crate) struct Robot {
     pub(crate) base: (String, f64),
     /// The gripper of a scenario: its body and its point there, m.
     pub(crate) gripper: Option<(String, [f64; 3])>,
-    /// The URDF file, if there is one.
+    /// Its file, if there is one.
     pub(crate) urdf: Option<PathBuf>,
     /// What of it was not used or was assumed.
     pub(crate) warnings: Vec<DescriptionWarning>,
@@ -34,7 +34,7 @@ pub(crate) struct Robot {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Refused;
 
-/// Whether the file is a scenario and no URDF file.
+/// Whether the file is a scenario, not that of a robot.
 pub(crate) fn is_scenario(file: &Path) -> bool {
     file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
 }
@@ -46,7 +46,7 @@ pub(crate) fn read(options: &RobotOptions, overrides: &[String], catalog: &Catal
 
 fn from_urdf(options: &RobotOptions, overrides: &[String]) -> Result<Robot, Refused> {
     if !overrides.is_empty() {
-        diagnostic::error("--set changes values of a scenario; a URDF file is taken as it is");
+        diagnostic::error("--set changes values of a scenario; a robot's file is taken as it is");
         return Err(Refused);
     }
     let how = DescriptionOptions {
@@ -74,7 +74,7 @@ fn from_urdf(options: &RobotOptions, overrides: &[String]) -> Result<Robot, Refu
     })
 }
 
-/// Refuses what only a URDF file can be asked for.
+/// Refuses what only a robot's file can be asked for.
 pub(crate) fn refuse_urdf_flags(options: &RobotOptions) -> Result<(), Refused> {
     let given = [
         ("--floating-base", options.floating_base, "floating_base = true"),
@@ -83,8 +83,8 @@ pub(crate) fn refuse_urdf_flags(options: &RobotOptions) -> Result<(), Refused> {
         ("--package-path", !options.package_path.is_empty(), "package_path = [\"DIR\"]"),
     ];
     let Some((flag, _, key)) = given.into_iter().find(|(_, given, _)| *given) else { return Ok(()) };
-    let message = format!("{flag} is for URDF files, and {} is a scenario", options.file.display());
-    diagnostic::error_with_help(message, format!("write {key} beside urdf in its [robot]"));
+    let message = format!("{flag} is for files of robots, and {} is a scenario", options.file.display());
+    diagnostic::error_with_help(message, format!("write {key} beside its file in its [robot]"));
     Err(Refused)
 }
 
@@ -174,7 +174,7 @@ impl Robot {
         self.base.1 + fixed.map(|(_, body)| body.mass).sum::<f64>()
     }
 
-    /// Prints the warnings of the URDF file on stderr.
+    /// Prints the warnings of its file on stderr.
     pub(crate) fn warn(&self) {
         let file = self.urdf.as_deref().unwrap_or(Path::new("")).display();
         for warning in &self.warnings {

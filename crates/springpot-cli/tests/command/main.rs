@@ -31,6 +31,7 @@ mod master;
 mod measured;
 mod messages;
 mod metrics;
+mod mjcf;
 mod modes;
 mod modulus;
 mod names;

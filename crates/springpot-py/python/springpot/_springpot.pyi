@@ -149,6 +149,14 @@ class Model:
         gravity: Sequence[float] | None = None,
     ) -> Model: ...
     @staticmethod
+    def from_mjcf(
+        path: str | os.PathLike[str],
+        *,
+        accept_inertia: bool = False,
+        package_path: Sequence[str | os.PathLike[str]] = ...,
+        gravity: Sequence[float] | None = None,
+    ) -> Model: ...
+    @staticmethod
     def from_scenario(scenario: Scenario, *, set: Mapping[str, Any] | None = None) -> Model: ...
     @property
     def name(self) -> str: ...

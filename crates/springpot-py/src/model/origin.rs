@@ -92,6 +92,32 @@ impl PyModel {
         })
     }
 
+    /// The robot of an MJCF file.
+    ///
+    /// Coordinates of hinges and slides are the file's qpos. What is free has x y z qx qy qz qw, the real part of the quaternion last, and vx vy vz wx wy wz in
+    /// its own axes; MuJoCo has the real part first, and the linear velocity in the axes of the world. ``stiffness`` of joints makes elements of scenarios and
+    /// is no part of this model.
+    ///
+    /// Args:
+    ///     path: the file.
+    ///     accept_inertia: whether inertias that no distribution of mass has are taken.
+    ///     package_path: folders that hold what it includes and its meshes, beside its own.
+    ///     gravity: m/s², shape ``(3,)``; the file's where left out.
+    ///
+    /// Raises:
+    ///     ModelError: what is wrong, with the file and the line; a FileNotFoundError too where there is no such file.
+    #[staticmethod]
+    #[pyo3(signature = (path, *, accept_inertia=false, package_path=Vec::new(), gravity=None))]
+    fn from_mjcf(
+        py: Python<'_>,
+        path: PathBuf,
+        accept_inertia: bool,
+        package_path: Vec<PathBuf>,
+        gravity: Option<[f64; 3]>,
+    ) -> PyResult<Self> {
+        Self::from_urdf(py, path, false, false, accept_inertia, package_path, gravity)
+    }
+
     /// The robot of a scenario: a path, a text (with a line break or ``=``) or a dict, of which ``[robot]`` alone counts.
     ///
     /// Args:

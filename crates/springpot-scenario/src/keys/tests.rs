@@ -191,7 +191,7 @@ fn the_pages_have_the_same_keys() {
     let all = |keys: &'static Keys| -> Vec<&'static Key> { keys.keys.iter().collect() };
     // The two keys of prescribed joints stand in sentences.
     let sections: [(Places, Vec<&'static Key>); 24] = [
-        (&[("robot", "[robot]"), ("urdf", "Keys")], all(&ROBOT)),
+        (&[("robot", "[robot]"), ("urdf", "Keys"), ("mjcf", "Keys")], all(&ROBOT)),
         (&[("robot", "Bodies")], all(&BODY)),
         (&[("robot", "Joints")], all(&JOINT)),
         (&[("robot", "Friction")], all(&FRICTION)),

@@ -255,7 +255,7 @@ impl<T: Rows> Task for Weigh<'_, '_, T> {
                 pair_hessian_of_moving(model, &room.kinematics, [from, to], moving, &mut room.workspace, hessian);
                 weigh_measure((moves, v, own), weights, [&room.gradient, hessian], by_place);
             }
-            T::write(&room.sums, here, &mut rows[..here * room.sums.len()]);
+            T::write(&room.sums[..], here, &mut rows[..here * room.sums.len()]);
             for row in rows.chunks_exact(room.sums.len()).take(here) {
                 sums.iter_mut().zip(row).for_each(|(sum, own)| *sum += own);
             }

@@ -1,4 +1,4 @@
-//! A starter for a robot from a URDF file: its joints, and an element between two of its links.
+//! A starter for a robot from a file: its joints, and an element between two of its links.
 
 use crate::arguments::InitOptions;
 use crate::{Ending, diagnostic};
@@ -161,7 +161,20 @@ impl Starter<'_> {
         let one = described.iter().map(|j| (body(parent(j)), j.joints.clone().collect()));
         let (moving, fixed): (Vec<(Parent, Vec<usize>)>, Vec<_>) = two.partition(|(from, _)| *from != Parent::World);
         let to = |joints: &[usize]| Parent::Body(self.model.joint_body(joints[joints.len() - 1]));
-        moving.into_iter().chain(fixed).chain(one).map(|(from, joints)| (from, to(&joints), joints)).collect()
+        let pairs = moving.into_iter().chain(fixed).chain(one).map(|(from, joints)| (from, to(&joints), joints));
+        if !self.urdf.is_mjcf() {
+            return pairs.collect();
+        }
+        // Links between the joints of one body are nobody's.
+        let pairs = pairs.map(|(from, to, _)| [from, to].map(|end| self.whole(end)));
+        let pairs = pairs.map(|[from, to]| (from, to, self.between(from, to)));
+        pairs.filter(|(.., joints)| !joints.is_empty()).collect()
+    }
+
+    /// The body that a link is, or is one of the links of.
+    fn whole(&self, link: Parent) -> Parent {
+        let Some((body, _)) = self.name(link).split_once('/') else { return link };
+        self.bodies().iter().position(|other| other.name == body).map_or(link, Parent::Body)
     }
 
     /// The pairs of which the ends that are given are part; without any, [`Self::pairs`].
@@ -253,9 +266,9 @@ impl Starter<'_> {
              # docs/SCENARIO.md describes every key; an editor completes them with the schema of `springpot check --schema`.\n\
              title = {title}\n\
              \n\
-             # The root link is the world; with floating_base = true it floats. `springpot info` shows links, joints and limits.\n\
+             # {about}`springpot info` shows links, joints and limits.\n\
              [robot]\n\
-             urdf = {urdf}\n\
+             {key} = {urdf}\n\
              {floating_base}{accept_inertia}\
              {gripper}\
              \n\
@@ -290,6 +303,11 @@ impl Starter<'_> {
              name = \"robot\"\n\
              kind = \"robot\"\n",
             title = quoted(&format!("{name} with a strut")),
+            about = match self.urdf.is_mjcf() {
+                true => "Points are in the frames of the file's bodies. ",
+                false => "The root link is the world; with floating_base = true it floats. ",
+            },
+            key = if self.urdf.is_mjcf() { "mjcf" } else { "urdf" },
             urdf = quoted(&self.path),
             from = anchor(strut.from),
             to = anchor(strut.to),
@@ -331,7 +349,12 @@ impl Starter<'_> {
         let moving: Vec<usize> =
             moving.iter().map(|&j| self.model.followed(j).map_or(j, |(leader, ..)| leader)).collect();
         let mut text = String::new();
+        let placed = |j: usize| {
+            let name = &self.model.described_joint(j).name;
+            self.urdf.start.iter().find(|(joint, _)| joint == name).map(|(_, at)| &at[..])
+        };
         let signal = |j: usize| match (self.model.joint_space(j), moving.contains(&j)) {
+            (_, false) if placed(j).is_some() => place(placed(j).unwrap_or_default()),
             (Space::Line(dimension), moves) => signal(dimension, self.model.limits(j), moves),
             (Space::Circle, moves) => signal(Dimension::Angle, self.model.limits(j), moves),
             (Space::Pose, true) => format!("{{ z = \"{SLIDE}*sin(2*pi*t)\" }}"),
@@ -350,6 +373,17 @@ impl Starter<'_> {
             let _ = writeln!(text, "{} = {said}", toml_key(&joint.name));
         }
         text
+    }
+}
+
+/// A coordinate, or a place in the world and an attitude, to 1e-9.
+fn place(at: &[f64]) -> String {
+    let near = |value: f64| (value * 1e9).round() / 1e9 + 0.0;
+    let &[x, y, z, roll, pitch, yaw] = at else { return format!("{}", at.first().map_or(0.0, |at| near(*at))) };
+    let place = format!("x = {}, y = {}, z = {}", near(x), near(y), near(z));
+    match [roll, pitch, yaw].map(near) {
+        [0.0, 0.0, 0.0] => format!("{{ {place} }}"),
+        rpy => format!("{{ {place}, rpy = {rpy:?} }}"),
     }
 }
 

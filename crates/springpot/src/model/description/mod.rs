@@ -122,7 +122,7 @@ pub struct RobotDescription {
     /// Springs of joints, of MJCF.
     pub springs: Vec<JointSpring>,
     /// Where the file places what moves, of MJCF: joints and their coordinates, in the order of the bodies, where these are not 0; of those that float
-    /// x y z qx qy qz qw.
+    /// x y z and roll, pitch, yaw.
     pub start: Vec<(String, Vec<f64>)>,
     /// What was not used or was assumed, by kind, the weightiest first.
     pub warnings: Vec<DescriptionWarning>,

@@ -208,7 +208,7 @@ impl fmt::Display for DescriptionWarning {
             what => format!("{owner} (line {line}: {what})"),
         };
         let of_owner = |DescriptionPlace { owner, line, what }: &DescriptionPlace| match owner {
-            Owner::Robot => format!("{what} (line {line})"),
+            Owner::Robot | Owner::Mujoco => format!("{what} (line {line})"),
             owner => format!("{what} of {owner} (line {line})"),
         };
         match style {

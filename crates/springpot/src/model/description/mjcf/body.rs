@@ -14,7 +14,7 @@ use super::warning::DescriptionWarningKind;
 use super::{BodyLines, JointSpring, Visual};
 use crate::model::spec::{BodySpec, JointSpec, Parent};
 use crate::names::is_name;
-use crate::spatial::{Inertia, Placement, Quaternion, Vec3};
+use crate::spatial::{Inertia, Placement, Vec3};
 use std::collections::HashMap;
 
 /// Elements of a body that move nothing.
@@ -321,7 +321,6 @@ fn hang(
 
 /// Where a body that moves freely stands in the file: its coordinates there.
 fn start_of_free(bodies: &mut Bodies, joint: &Joint, at: &Placement) {
-    let Quaternion(turned) = Quaternion::from_rpy(attitude::rpy(&at.rotation));
-    let coordinates = at.translation.0.into_iter().chain(turned).collect();
+    let coordinates = at.translation.0.into_iter().chain(attitude::rpy(&at.rotation)).collect();
     bodies.start.push((joint.spec.name.clone(), coordinates));
 }

@@ -163,8 +163,8 @@ fn moved(joint: &JointSpec, at: Option<&[f64]>) -> Placement {
         (JointKind::Prismatic, Some([way])) => {
             Placement { translation: Vec3(axis.0.map(|x| way * x)), ..Placement::IDENTITY }
         }
-        (JointKind::Floating, Some(&[x, y, z, qx, qy, qz, qw])) => {
-            Placement { rotation: Rotation::from_quaternion_components([qx, qy, qz, qw]), translation: Vec3([x, y, z]) }
+        (JointKind::Floating, Some(&[x, y, z, roll, pitch, yaw])) => {
+            Placement { rotation: Rotation::from_rpy([roll, pitch, yaw]), translation: Vec3([x, y, z]) }
         }
         _ => Placement::IDENTITY,
     }
