@@ -6,6 +6,7 @@ use crate::reader::element;
 use crate::text::document::{Node, Value};
 use crate::text::quoted::toml_text;
 use crate::text::refusal::Source;
+use springpot::model::description::{DescriptionOptions, RobotDescription};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -87,6 +88,9 @@ impl Moved<'_> {
             Some(text) if FILES.contains(&key) || self.tables.iter().any(|table| table == key) => {
                 if let Some(name) = self.name_of(text) {
                     self.replace(node, toml_text(&name));
+                    if key == "mjcf" {
+                        self.take_parts(text);
+                    }
                 }
             }
             _ => self.visit(node),
@@ -110,6 +114,21 @@ impl Moved<'_> {
         let name = [format!("{FOLDER}/{own}")].into_iter().chain(numbered).find(|name| !taken(name))?;
         self.files.push((name.clone(), file));
         Some(name)
+    }
+
+    /// Takes what a robot's file includes and its meshes that have mass along, to the same places beside it.
+    fn take_parts(&mut self, text: &str) {
+        let Ok(file) = self.folder.join(text).canonicalize() else { return };
+        let options = DescriptionOptions { accept_inertia: true, ..DescriptionOptions::default() };
+        let Ok(robot) = RobotDescription::read(&file, &options) else { return };
+        for part in robot.parts.iter().filter_map(|part| part.canonicalize().ok()) {
+            let Some(Ok(inside)) = file.parent().map(|folder| part.strip_prefix(folder)) else { continue };
+            let steps: Vec<_> = inside.components().map(|step| step.as_os_str().to_string_lossy()).collect();
+            let name = format!("{FOLDER}/{}", steps.join("/"));
+            if !self.files.iter().any(|(other, _)| *other == name) {
+                self.files.push((name, part));
+            }
+        }
     }
 
     fn edited(&self, source: &Arc<Source>) -> String {
@@ -167,5 +186,19 @@ mod tests {
             ("files/2-a.csv", "a.csv"),
         ];
         assert_eq!(read, wanted.map(|(name, text)| (name, text.to_owned())));
+    }
+
+    #[test]
+    fn what_a_robot_includes_moves_with_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::create_dir(at("parts")).unwrap();
+        fs::write(at("parts/limb.xml"), "<mujoco><default><geom size=\"0.1\"/></default></mujoco>").unwrap();
+        let robot =
+            "<mujoco><include file=\"parts/limb.xml\"/><worldbody><body><joint/><geom/></body></worldbody></mujoco>";
+        fs::write(at("robot.xml"), robot).unwrap();
+        let scenario = Scenario::parse("[robot]\nmjcf = \"robot.xml\"\n", "s.toml", folder.path()).unwrap();
+        let names: Vec<String> = scenario.portable().files.into_iter().map(|(name, _)| name).collect();
+        assert_eq!(names, ["files/robot.xml", "files/parts/limb.xml"]);
     }
 }

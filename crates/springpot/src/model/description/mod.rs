@@ -117,6 +117,8 @@ pub struct RobotDescription {
     pub visuals: Vec<Vec<Visual>>,
     /// Which format it has.
     pub format: Format,
+    /// The files that it was read from beside its own: what it includes, and meshes that it takes masses from.
+    pub parts: Vec<PathBuf>,
     /// Gravity in the axes of the world, m/s², where the file tells it, as MJCF can.
     pub gravity: Option<[f64; 3]>,
     /// Springs of joints, of MJCF.

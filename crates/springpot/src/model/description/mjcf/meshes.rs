@@ -10,8 +10,8 @@ use super::settings::Settings;
 use super::triangles::{Solid, Triangles};
 use super::warning::DescriptionWarningKind;
 use crate::spatial::{Rotation, Vec3};
-use std::collections::BTreeMap;
-use std::path::Path;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
 
 const KNOWN: [&str; 18] = [
     "name",
@@ -55,7 +55,9 @@ pub(super) struct Meshes {
     solids: BTreeMap<String, Solid>,
     packages: Option<Packages>,
     /// Files that were told to be missing.
-    told: BTreeMap<String, ()>,
+    told: BTreeSet<String>,
+    /// Files that masses follow from.
+    read: Vec<PathBuf>,
     is_told_of_exact: bool,
 }
 
@@ -88,7 +90,14 @@ impl Meshes {
             };
             assets.insert(name, asset);
         }
-        Ok(Self { assets, solids: BTreeMap::new(), packages, told: BTreeMap::new(), is_told_of_exact: false })
+        Ok(Self {
+            assets,
+            solids: BTreeMap::new(),
+            packages,
+            told: BTreeSet::new(),
+            read: Vec::new(),
+            is_told_of_exact: false,
+        })
     }
 
     /// The file of a mesh for those who draw it: as it is named, where it is, factors along its axes.
@@ -102,7 +111,7 @@ impl Meshes {
         let place = match self.packages.as_mut()?.find(&file) {
             Found::At(place) => Some(place),
             found => {
-                if self.told.insert(file.clone(), ()).is_none() {
+                if self.told.insert(file.clone()) {
                     let kind = match found {
                         Found::Outside => DescriptionWarningKind::MeshOutside,
                         _ => DescriptionWarningKind::MeshNotFound,
@@ -113,6 +122,11 @@ impl Meshes {
             }
         };
         Some((file, place, asset.scale))
+    }
+
+    /// Files that masses follow from.
+    pub(super) fn read(&self) -> impl Iterator<Item = &PathBuf> {
+        self.read.iter()
     }
 
     /// What a mesh encloses, of a shape that takes its mass from it.
@@ -158,6 +172,7 @@ impl Meshes {
             reader.warn(DescriptionWarningKind::InSimulator, &Owner::Mesh(name.to_owned()), asset.at, what);
         }
         self.solids.insert(name.to_owned(), solid);
+        self.read.push(place.path);
         Ok(solid)
     }
 }

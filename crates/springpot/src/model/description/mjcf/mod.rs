@@ -61,6 +61,7 @@ pub(super) fn read(
     let walk = Walk { reader: &mut reader, settings: &settings, classes: &classes, geoms };
     let Bodies { mut specs, lines, visuals, world, springs, start, tuned, .. } = walk.bodies(root.all("worldbody"))?;
     mass::scale(&mut specs, &settings);
+    let parts = included.iter().map(|file| file.path.clone()).chain(meshes.read().cloned()).collect();
     let line = reader.line(root.at);
     let mut robot = RobotDescription {
         name: root.text("model").unwrap_or_default().to_owned(),
@@ -72,6 +73,7 @@ pub(super) fn read(
         lines,
         visuals,
         format: Format::Mjcf,
+        parts,
         gravity: settings.gravity,
         springs,
         start,

@@ -228,6 +228,7 @@ fn assemble<'a>(
         lines: body_lines,
         visuals,
         format: Format::Urdf,
+        parts: Vec::new(),
         gravity: None,
         springs: Vec::new(),
         start: Vec::new(),
