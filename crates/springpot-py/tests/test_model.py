@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import pickle
 import subprocess
@@ -358,7 +359,25 @@ def test_threads_share_a_model(ur5: sp.Model) -> None:
     assert not wrong
 
 
+def test_mjcf_files() -> None:
+    """Gravity is the file's, mass matrix and bias forces MuJoCo's (testdata/mjcf/reference.py)."""
+    folder = ROOT / "testdata" / "mjcf"
+    for of in json.loads((folder / "reference.json").read_text())["robots"]:
+        robot = sp.Model.from_mjcf(folder / of["file"])
+        assert robot.gravity_vector[2] != -9.81
+        for state in of["states"]:
+            q, v = (np.array(state[key]) for key in ["q", "v"])
+            mass, bias = np.array(state["M"]), np.array(state["bias"])
+            sizes = np.sqrt(np.outer(np.diag(mass), np.diag(mass)))
+            assert np.all(np.abs(robot.crba(q) - mass) < 1e-13 * sizes)
+            assert np.all(np.abs(robot.rnea(q, v, np.zeros(robot.nv)) - bias) < 1e-13 * np.abs(bias).max())
+    weightless = sp.Model.from_mjcf(folder / "arm.xml", gravity=(0, 0, 0))
+    assert np.all(weightless.gravity_vector == 0)
+
+
 def test_bad_files(tmp_path: Any) -> None:
+    with pytest.raises(sp.ModelError, match="nothing.xml"):
+        sp.Model.from_mjcf(tmp_path / "nothing.xml")
     with pytest.raises(sp.ModelError, match="nothing.urdf"):
         sp.Model.from_urdf(tmp_path / "nothing.urdf")
     with pytest.raises(sp.ScenarioError) as refused:
