@@ -116,8 +116,10 @@ impl Validator {
                 }
                 "dependencies" => {
                     let met = |(key, needs): (&String, &Value)| {
-                        let mut needs = needs.as_array().unwrap().iter();
-                        value.get(key).is_none() || needs.all(|need| value.get(need.as_str().unwrap()).is_some())
+                        let has = |need: &Value| value.get(need.as_str().unwrap()).is_some();
+                        let is_met =
+                            || needs.as_array().map_or_else(|| self.takes(needs, value), |needs| needs.iter().all(has));
+                        value.get(key).is_none() || is_met()
                     };
                     rule.as_object().unwrap().iter().all(met)
                 }

@@ -54,6 +54,7 @@ pages! {
     scenario_values: "scenario/values.md";
     scenario_robot: "scenario/robot.md";
     scenario_urdf: "scenario/urdf.md";
+    scenario_mjcf: "scenario/mjcf.md";
     scenario_element: "scenario/element.md";
     scenario_past: "scenario/past.md";
     scenario_heat: "scenario/heat.md";

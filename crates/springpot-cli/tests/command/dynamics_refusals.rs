@@ -146,9 +146,15 @@ fn frames_and_files_that_do_not_exist_are_refused() {
         (&["dynamics", &ur5, "--states", "none.json"][..], "error: none.json: cannot be read: "),
         (&["dynamics", "none.urdf", "--states", "none.json"], "error: none.urdf: cannot be read: "),
         (&["dynamics", "none.toml", "--states", "none.json"], "error: none.toml: cannot be opened: "),
-        (&["dynamics", "arm.toml", "--states", "none.json", "--floating-base"], "--floating-base is for URDF files"),
-        (&["dynamics", "arm.toml", "--states", "none.json", "--ignore-mimic"], "--ignore-mimic is for URDF files"),
-        (&["dynamics", "arm.toml", "--states", "none.json", "--package-path", "."], "--package-path is for URDF files"),
+        (
+            &["dynamics", "arm.toml", "--states", "none.json", "--floating-base"],
+            "--floating-base is for files of robots",
+        ),
+        (&["dynamics", "arm.toml", "--states", "none.json", "--ignore-mimic"], "--ignore-mimic is for files of robots"),
+        (
+            &["dynamics", "arm.toml", "--states", "none.json", "--package-path", "."],
+            "--package-path is for files of robots",
+        ),
         (&["dynamics", "arm.toml", "--states", "none.json", "--set", "robot.body.arm.mass=-1"], "--set:1:21"),
     ] {
         let ended = place.springpot(arguments);

@@ -260,7 +260,7 @@ fn what_has_no_equation_is_refused_or_fails() {
         (&["arm.toml", "--at", "soon"], 2, "write a time such as 0.5 or \"500 ms\""),
         (&["arm.toml", "--at", "nan"], 2, "write a time such as"),
         (&["arm.toml", "--at", "0", "--case", "1"], 2, "--case 1: the last case of arm.toml is 0"),
-        (&["arm.toml", "--at", "0", "--floating-base"], 2, "--floating-base is for URDF files"),
+        (&["arm.toml", "--at", "0", "--floating-base"], 2, "--floating-base is for files of robots"),
         (&["arm.toml", "--at", "0", "--set", "element.damper.alpha=2"], 2, "--set:1:22"),
         (&["arm.urdf", "--at", "0"], 2, "--at wants a scenario (.toml)"),
         (&["arm.toml", "--at", "0.3", "--set", "element.damper.u=1 - 20*t"], 1, "error: t = 0.17"),

@@ -83,7 +83,7 @@ fn a_broken_triangle_is_refused_with_the_cure_and_can_be_accepted() {
     refused(&place.springpot(&["check", "mixer.toml", "--set", "robot.accept_inertia=false"]), &[message, cure]);
     refused(
         &place.springpot(&["info", "mixer.toml", "--accept-inertia"]),
-        &["write accept_inertia = true beside urdf"],
+        &["write accept_inertia = true beside its file"],
     );
 }
 

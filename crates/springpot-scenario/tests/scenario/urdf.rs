@@ -218,7 +218,11 @@ fn what_is_wrong_with_the_robot_is_refused_in_its_place() {
     let body = "[[robot.body]]\nname = \"a\"\nmass = 1\ncom = [0, 1, 0]\njoint = { name = \"q\", kind = \"revolute\", axis = [1, 0, 0] }\n";
     for (text, kind, words) in [
         (robot("urdf = ‸\"robots/none.urdf\""), File, "none.urdf: cannot be read: "),
-        (robot("urdf = ‸\"robots/none.urdf\""), File, "help: write the path of a URDF file, relative to the scenario"),
+        (
+            robot("urdf = ‸\"robots/none.urdf\""),
+            File,
+            "help: write the path of the robot's file, relative to the scenario",
+        ),
         (robot("urdf = ‸\"robots\""), File, "not a regular file"),
         (robot("urdf = ‸\"robots/broken.urdf\""), File, "broken.urdf:5:15: value of <mass> of link \"car\" is -4"),
         (robot("urdf = ‸\"robots/alone.urdf\""), File, "alone.urdf:1:1: the robot is the single link \"rock\""),
@@ -249,7 +253,7 @@ fn what_is_wrong_with_the_robot_is_refused_in_its_place() {
         (
             format!("[robot]\nurdf = \"robots/lift.urdf\"\nbody = ‸[{{ name = \"a\" }}]\n{REST}"),
             Rule,
-            "`body` of [robot] stands beside `urdf`\n  help: a robot is a URDF file or [[robot.body]] blocks",
+            "`body` of [robot] stands beside `urdf`\n  help: a robot is a file or [[robot.body]] blocks",
         ),
         (
             format!(
@@ -268,7 +272,7 @@ fn what_is_wrong_with_the_robot_is_refused_in_its_place() {
         (
             format!("‸[robot]\ngravity = [0, 0, 0]\n{REST}"),
             Missing,
-            "[robot] has no `body`\n  help: write urdf = \"arm.urdf\", or",
+            "[robot] has no `body`\n  help: write urdf = \"arm.urdf\", mjcf = \"arm.xml\", or",
         ),
     ] {
         assert_refused(&text, kind, words);
