@@ -55,7 +55,8 @@ def reference(file):
             mujoco.mj_fullM(model, mass, data.qM)
         except (AttributeError, TypeError):
             mujoco.mj_fullM(model, data, mass)
-        bias = turned.T @ (data.qfrc_bias + mass @ rate)
+        # Armature is felt along the velocities of springpot, not along those of MuJoCo.
+        bias = turned.T @ (data.qfrc_bias + (mass - np.diag(model.dof_armature)) @ rate)
         mass = turned.T @ mass @ turned
         states.append({"q": q.tolist(), "v": v.tolist(), "M": mass.tolist(), "bias": bias.tolist()})
     springs = [

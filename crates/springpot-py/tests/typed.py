@@ -54,7 +54,7 @@ def robots() -> None:
     mjcf: sp.Model = sp.Model.from_mjcf(
         Path(__file__).parents[3] / "testdata" / "mjcf" / "arm.xml", accept_inertia=False, package_path=[], gravity=None
     )
-    assert mjcf.nv == 14
+    assert mjcf.nv == 20
     urdf: sp.Model = sp.Model.from_urdf(Path(__file__).parents[3] / "testdata" / "multibody" / "ur5.urdf", gravity=[0, 0, -1.62])
     words: list[str] = [model.name, *model.joint_names, *model.joint_kinds, *model.q_names, *model.v_names, *urdf.warnings]
     frames: list[str] = [*model.body_names, *model.body_parents, *model.frame_names, model.gripper_body or "", *words]

@@ -83,6 +83,7 @@ pub(super) fn read(
         damping: damping?,
         friction: friction.map(|(force, _)| force),
         friction_law: friction.map(|(_, law)| law),
+        armature_all: 0.0,
         armature: armature?,
         limits: limits?,
         mimic: mimic?,

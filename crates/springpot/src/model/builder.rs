@@ -158,7 +158,7 @@ impl ModelBuilder {
         let is_number = part.space.dimension().is_some();
         model.drivetrain.damping.push(if is_number { joint.damping[k] } else { 0.0 });
         model.drivetrain.friction.push(if is_number { joint.friction[k] } else { 0.0 });
-        model.drivetrain.armature.push(if is_number { joint.armature[k] } else { 0.0 });
+        model.drivetrain.armature.push(if is_number { joint.armature[k] } else { joint.armature_all });
         model.drivetrain.friction_laws.push(joint.friction_law[k]);
         model.limits.push(joint.limits[k]);
         self.mimics.push(joint.mimic.clone());

@@ -34,7 +34,7 @@ pub(super) fn number(model: &mut Model, mimics: &[Option<Mimic>]) -> Result<(), 
         }
         model.tree.last_degrees.push(carrier);
     }
-    model.drivetrain.collect_rotors(&model.numbering);
+    model.drivetrain.collect_rotors(&model.numbering, &model.spaces);
     // Without followers, degrees and velocities are the same; followers couple branches, so that nothing is known to stay 0.
     model.tree.pivots =
         if model.is_free_of_followers() { model.tree.carriers.clone() } else { (0..model.numbering.nv).collect() };

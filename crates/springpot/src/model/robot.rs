@@ -308,7 +308,7 @@ impl Model {
         }
         model.masses.collect_subtrees(&model.parents);
         model.drivetrain.armature = armature.to_vec();
-        model.drivetrain.collect_rotors(&model.numbering);
+        model.drivetrain.collect_rotors(&model.numbering, &model.spaces);
         model
     }
 

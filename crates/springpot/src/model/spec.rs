@@ -91,6 +91,8 @@ pub struct JointSpec {
     pub friction_law: [FrictionLaw; MOST_COORDINATES],
     /// Inertia of the rotor as felt along the coordinate, kg·m² or kg, 0 or more.
     pub armature: [f64; MOST_COORDINATES],
+    /// Inertia felt along each velocity of a joint without numbers for coordinates, kg·m² and kg, 0 or more (without meaning for others).
+    pub armature_all: f64,
     /// What it is built for.
     pub limits: [Limits; MOST_COORDINATES],
     /// The joint that it follows, if it has no coordinate of its own.
@@ -156,6 +158,7 @@ impl JointSpec {
             friction: [0.0; MOST_COORDINATES],
             friction_law: [FrictionLaw::default(); MOST_COORDINATES],
             armature: [0.0; MOST_COORDINATES],
+            armature_all: 0.0,
             limits: [Limits::NONE; MOST_COORDINATES],
             mimic: None,
         }

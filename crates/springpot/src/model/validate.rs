@@ -87,7 +87,7 @@ fn numbers(body: usize, spec: &BodySpec) -> Result<(), ModelError> {
         FrictionLaw::Smooth { speed } => speed,
         FrictionLaw::Sticking => f64::MIN_POSITIVE,
     });
-    let fields: [(Field, &[f64]); 13] = [
+    let fields: [(Field, &[f64]); 14] = [
         (Field::Axis, &joint.axis),
         (Field::Axis2, &joint.axis2),
         (Field::Lead, &[joint.lead]),
@@ -97,6 +97,7 @@ fn numbers(body: usize, spec: &BodySpec) -> Result<(), ModelError> {
         (Field::Friction, &joint.friction),
         (Field::FrictionSpeed, &speeds),
         (Field::Armature, &joint.armature),
+        (Field::Armature, &[joint.armature_all]),
         (Field::Mimic, &mimic),
         (Field::Mass, &[spec.mass]),
         (Field::Com, &spec.com),
@@ -107,10 +108,11 @@ fn numbers(body: usize, spec: &BodySpec) -> Result<(), ModelError> {
             return Err(ModelError::NotFinite { body, name: spec.name.clone(), field, value });
         }
     }
-    let not_negative: [(Field, &[f64]); 4] = [
+    let not_negative: [(Field, &[f64]); 5] = [
         (Field::Damping, &joint.damping),
         (Field::Friction, &joint.friction),
         (Field::Armature, &joint.armature),
+        (Field::Armature, &[joint.armature_all]),
         (Field::Mass, &[spec.mass]),
     ];
     for (field, values) in not_negative {

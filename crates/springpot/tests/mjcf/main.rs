@@ -63,13 +63,13 @@ fn names_places_and_looks_are_the_files() {
     let model = robot.model([0.0; 3]).unwrap();
     assert_eq!(
         model.joint_names(),
-        ["turn", "lift", "upper_arm_joint", "upper_arm_joint_2", "body3_joint", "wrist", "ball"]
+        ["turn", "lift", "upper_arm_joint", "upper_arm_joint_2", "body3_joint", "wrist", "ball", "brick"]
     );
     for name in ["base", "upper_arm", "body3", "hand", "nail", "ball", "world"] {
         assert!(model.find_body(name).is_some(), "{name}");
     }
     let start: Vec<&str> = robot.start.iter().map(|(joint, _)| joint.as_str()).collect();
-    assert_eq!(start, ["lift", "upper_arm_joint_2", "ball"]);
+    assert_eq!(start, ["lift", "upper_arm_joint_2", "ball", "brick"]);
     assert_eq!(robot.start[2].1[..3], [1.0, 0.0, 0.4]);
     let limits = |name: &str| model.limits(model.joint_index(name).unwrap());
     assert_eq!((limits("lift").upper, limits("turn").upper), (120f64.to_radians(), f64::INFINITY));

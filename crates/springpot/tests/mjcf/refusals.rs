@@ -34,7 +34,7 @@ fn mistakes_are_named_by_their_place() {
         ("", "<joint type=\"hing\"/><geom size=\"1\"/>", "did you mean \"hinge\"?"),
         ("", "<joint damping=\"-1\"/><geom size=\"1\"/>", "damping of -1"),
         ("", "<joint armature=\"x\"/><geom size=\"1\"/>", "\"x\""),
-        ("", "<joint type=\"ball\" armature=\"1\"/><geom size=\"1\"/>", "armature"),
+        ("", "<joint type=\"ball\" armature=\"-1\"/><geom size=\"1\"/>", "armature"),
         ("", "<joint/><joint name=\"a_joint\"/><geom size=\"1\"/>", "joint \"a_joint\" stands twice"),
         ("", "<joint name=\"a b\"/><joint name=\"a/b\"/><geom size=\"1\"/>", "becomes \"a_b\", and so does \"a b\""),
         ("", "<joint/><freejoint/><geom size=\"1\"/>", "must be the only joint"),

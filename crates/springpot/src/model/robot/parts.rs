@@ -1,6 +1,7 @@
 //! What a [`Model`](crate::model::Model) is made of, by what is handed on together.
 
 use crate::model::degree::{Coordinates, Degree};
+use crate::model::kind::Space;
 use crate::model::spec::FrictionLaw;
 use crate::spatial::Inertia;
 use std::collections::BTreeMap;
@@ -84,11 +85,12 @@ impl Masses {
 }
 
 impl Drivetrain {
-    /// Adds up the armatures felt along `nv` velocities, those of followers through their leaders.
-    pub(in crate::model) fn collect_rotors(&mut self, numbering: &Numbering) {
+    /// Adds up the armatures felt along `nv` velocities, those of followers through their leaders; of a joint of several velocities each feels it.
+    pub(in crate::model) fn collect_rotors(&mut self, numbering: &Numbering, spaces: &[Space]) {
         self.rotors = vec![0.0; numbering.nv];
-        for (own, armature) in numbering.coordinates.iter().zip(&self.armature) {
-            self.rotors[own.v] += own.ratio * own.ratio * armature;
+        for ((own, space), armature) in numbering.coordinates.iter().zip(spaces).zip(&self.armature) {
+            let felt = &mut self.rotors[own.v..own.v + space.nv()];
+            felt.iter_mut().for_each(|rotor| *rotor += own.ratio * own.ratio * armature);
         }
         self.has_rotors = self.rotors.iter().any(|rotor| *rotor != 0.0);
     }

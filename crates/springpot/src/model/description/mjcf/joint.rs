@@ -86,20 +86,19 @@ pub(super) fn read(
     };
     let anchor = offset.point(given.array(reader, "pos")?.map_or(Vec3::ZERO, Vec3));
     if kind == "free" || kind == "ball" {
-        if given.not_negative(reader, "armature")? > 0.0 {
-            let why = format!("is a {kind} joint with an armature, which is not supported");
-            return Err(reader.refuse(element.at, owner, why));
-        }
+        let armature = given.not_negative(reader, "armature")?;
         for what in ["damping", "stiffness", "frictionloss"] {
             if given.numbers(reader, what, 1..=3)?.unwrap_or_default().iter().any(|number| *number != 0.0) {
                 let what = format!("{what} of {kind} joints");
                 reader.warn(DescriptionWarningKind::InSimulator, owner, element.at, what);
             }
         }
-        return Ok(match kind {
+        let mut joint = match kind {
             "free" => plain(JointSpec::floating(name, [0.0; 3]), Vec3::ZERO),
             _ => plain(JointSpec::spherical(name, [0.0; 3]), anchor),
-        });
+        };
+        joint.spec.armature_all = armature;
+        return Ok(joint);
     }
     let turns = kind == "hinge";
     let scaled = |x: f64| if turns { settings.angle(x) } else { x };

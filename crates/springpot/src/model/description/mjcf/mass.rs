@@ -111,7 +111,8 @@ pub(super) fn felt(bodies: &[BodySpec], start: &[(String, Vec<f64>)]) -> Option<
             JointKind::Floating => axes.map(slides).into_iter().chain(axes.map(turns)).collect(),
             _ => Vec::new(),
         };
-        ways.extend(own.into_iter().map(|way| (index, way, joint.armature[0])));
+        let armature = if joint.kind.nv() == 1 { joint.armature[0] } else { joint.armature_all };
+        ways.extend(own.into_iter().map(|way| (index, way, armature)));
     }
     for k in (0..bodies.len()).rev() {
         if let Parent::Body(parent) = bodies[k].parent {
