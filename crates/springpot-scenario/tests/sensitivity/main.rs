@@ -442,7 +442,7 @@ rtol = 1e-10
     );
     let mut asked = scenario(text);
     asked.differentiate("robot.body.panda_link4.mass").unwrap();
-    assert!(said(&asked).contains("numbers in a URDF file have no path"), "{}", said(&asked));
+    assert!(said(&asked).contains("numbers in a robot's file have no path"), "{}", said(&asked));
 }
 
 /// Cases of elements that are not enabled have the columns of those that are.
