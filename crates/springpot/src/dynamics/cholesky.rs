@@ -109,11 +109,16 @@ pub(super) fn solve_matrix<T: Scalar>(model: &Model, factor: &[T], x: &mut [T]) 
 /// the columns from k on.
 #[inline(always)]
 pub fn inverse_from_cholesky_into<T: Scalar>(model: &Model, factor: &[T], inverse: &mut [T]) {
-    let n = model.nv();
     upper_inverse_from_cholesky_into(model, factor, inverse);
+    mirror(model.nv(), inverse);
+}
+
+/// Writes the lower triangle of a symmetric n × n matrix from its upper one.
+#[inline(always)]
+fn mirror<T: Scalar>(n: usize, matrix: &mut [T]) {
     for k in 1..n {
         for j in 0..k {
-            inverse[k * n + j] = inverse[j * n + k];
+            matrix[k * n + j] = matrix[j * n + k];
         }
     }
 }
@@ -271,9 +276,8 @@ pub fn mass_inverse_into<T: Scalar>(
     factor: &mut [T],
     inverse: &mut [T],
 ) {
-    lower_crba_into(model, kinematics, workspace, factor);
-    cholesky_into(model, factor);
-    inverse_from_cholesky_into(model, factor, inverse);
+    upper_mass_inverse_into(model, kinematics, workspace, factor, inverse);
+    mirror(model.nv(), inverse);
 }
 
 /// [`mass_inverse_into`] of which the upper triangle is asked for.

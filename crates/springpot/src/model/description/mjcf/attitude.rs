@@ -6,7 +6,7 @@ use super::settings::Settings;
 use crate::spatial::{Placement, Rotation, Vec3};
 
 /// The ways to write an attitude; of an element's own and its class's the element's counts.
-const WAYS: [&str; 5] = ["axisangle", "xyaxes", "zaxis", "euler", "quat"];
+pub(super) const WAYS: [&str; 5] = ["axisangle", "xyaxes", "zaxis", "euler", "quat"];
 
 /// Vectors shorter than this have no direction.
 const SHORT: f64 = 1e-10;

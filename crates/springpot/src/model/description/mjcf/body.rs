@@ -22,20 +22,7 @@ const UNUSED: [&str; 3] = ["site", "camera", "light"];
 /// Those that make bodies or joints that are not read.
 const REFUSED: [&str; 5] = ["replicate", "composite", "flexcomp", "attach", "plugin"];
 
-const KNOWN: [&str; 12] = [
-    "name",
-    "childclass",
-    "pos",
-    "quat",
-    "axisangle",
-    "xyaxes",
-    "zaxis",
-    "euler",
-    "mocap",
-    "gravcomp",
-    "user",
-    "sleep",
-];
+const KNOWN: [&str; 7] = ["name", "childclass", "pos", "mocap", "gravcomp", "user", "sleep"];
 
 /// What the bodies of a file are.
 #[derive(Debug, Default)]
@@ -168,7 +155,7 @@ impl<'d> Walk<'d, '_, '_> {
         bodies.count += 1;
         let owner = Owner::Body(written.clone());
         let name = self.name(bodies, false, &written, (element.at, &owner))?;
-        self.reader.check_attributes(element, &owner, &[&KNOWN]);
+        self.reader.check_attributes(element, &owner, &[&KNOWN, &attitude::WAYS]);
         let given = Given::alone(element, &owner);
         let place = offset * placement(self.reader, &given, self.settings)?;
         if given.number(self.reader, "gravcomp")?.unwrap_or(0.0) != 0.0 {

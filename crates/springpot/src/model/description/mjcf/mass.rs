@@ -1,6 +1,6 @@
 //! Masses of the bodies: from `<inertial>` or from shapes, and what `<compiler>` makes of them.
 
-use super::attitude::placement;
+use super::attitude::{self, placement};
 use super::error::DescriptionError;
 use super::given::{Given, Reader};
 use super::settings::Settings;
@@ -9,7 +9,7 @@ use crate::model::kind::JointKind;
 use crate::model::spec::{BodySpec, JointSpec, Parent};
 use crate::spatial::{Inertia, Placement, Rotation, Symmetric3, Vec3};
 
-const KNOWN: [&str; 9] = ["pos", "quat", "axisangle", "xyaxes", "zaxis", "euler", "mass", "diaginertia", "fullinertia"];
+const KNOWN: [&str; 4] = ["pos", "mass", "diaginertia", "fullinertia"];
 
 /// Mass, kg, its centre in the frame of the body, m, and the moments about it in the axes of the body, kg·m².
 #[derive(Debug, Clone, Copy)]
@@ -34,7 +34,7 @@ pub(super) fn inertial(
     given: &Given<'_>,
     settings: &Settings,
 ) -> Result<Mass, DescriptionError> {
-    reader.check_attributes(given.element, given.owner, &[&KNOWN]);
+    reader.check_attributes(given.element, given.owner, &[&KNOWN, &attitude::WAYS]);
     if given.attribute("mass").is_none() {
         return Err(reader.refuse(given.element.at, given.owner, "has an <inertial> without mass"));
     }

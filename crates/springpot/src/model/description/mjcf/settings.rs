@@ -34,20 +34,17 @@ pub(super) struct Settings {
 }
 
 /// Attributes of `<compiler>` that concern nothing that is read.
-const OTHER: [&str; 11] = [
-    "coordinate",
+const OTHER: [&str; 8] = [
     "texturedir",
     "usethread",
     "discardvisual",
     "fusestatic",
     "convexhull",
     "exactmeshinertia",
-    "alignfree",
     "saveinertial",
     "conflict",
-    "class",
 ];
-const USED: [&str; 14] = [
+const USED: [&str; 15] = [
     "angle",
     "eulerseq",
     "autolimits",
@@ -61,7 +58,8 @@ const USED: [&str; 14] = [
     "assetdir",
     "strippath",
     "fitaabb",
-    "gravity",
+    "coordinate",
+    "alignfree",
 ];
 
 impl Settings {
