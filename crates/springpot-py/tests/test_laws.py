@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import pickle
+import re
 
 import numpy as np
 import pytest
@@ -69,6 +70,25 @@ def test_networks() -> None:
     assert prony.parameters == {"k_e": 1.0, "k": [2.0, 3.0], "tau": [0.01, 1.0]}
     with pytest.raises(ValueError, match="as many"):
         sp.law("prony", k_e=1, k=[2.0, 3.0], tau=[1.0])
+
+
+def test_expressions() -> None:
+    said = sp.network("parallel(expression(f), spring(k))", f="b*x^3 + c*v", b="5 MN/m^3", c=2.0, k="3 kN/m")
+    assert said.parameters == {"k": 3000.0, "b": 5e6, "c": 2.0, "f": "b*x^3 + c*v"}
+    assert said.units == {"k": "N/m", "b": "kg/m^2/s^2", "c": ""} and said.leaves == ["expression1", "spring1"]
+    assert pickle.loads(pickle.dumps(said)) == said
+    inline = sp.network("expression('k*x + c*v', k, c)", k=3.0, c=2.0)
+    assert np.array_equal(inline.modulus([0.0, 10.0]), sp.law("kelvin-voigt", k=3.0, c=2.0).modulus([0.0, 10.0]))
+    for text, given, words in [
+        ("expression(f)", {"k": 3.0}, 'the expression "f" is missing'),
+        ("expression(f)", {"f": 3.0}, "f must be a text"),
+        ("expression(f)", {"f": "k*x*t"}, "f, character 5: `t` has no place"),
+        ("expression(f)", {"f": "k*x"}, 'the parameter "k" is missing'),
+        ("expression(f)", {"f": "k*x", "k": "3 bananas"}, "bananas"),
+        ("expression('k*x')", {"k": 3.0}, "is not named behind the expression"),
+    ]:
+        with pytest.raises((ValueError, TypeError), match=re.escape(words)):
+            sp.network(text, **given)
 
 
 @pytest.mark.parametrize(

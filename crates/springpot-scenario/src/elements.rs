@@ -187,6 +187,11 @@ fn element(table: &Table<'_>, shape: Shape, time: Option<&Duration>) -> Read<Ele
     Materials::read(table, shape.measure.is_rotation(), time)?.element(table, shape)
 }
 
+/// What is to be done about a broken rule.
+fn change(parameter: &str) -> String {
+    if parameter.is_empty() { "here".to_owned() } else { format!("change `{parameter}`") }
+}
+
 /// Notes what the law of an element refuses.
 pub(crate) fn check(table: &Table<'_>, material: &Material, past: &Read<(Derivative, PastPlan)>) {
     let Material { law, parameters: Ok(parameters), .. } = material else { return };
@@ -195,8 +200,8 @@ pub(crate) fn check(table: &Table<'_>, material: &Material, past: &Read<(Derivat
         let table_field = table.get("parameters");
         let node = table_field.as_ref().map_or(table.node, |field| field.node);
         let place = node.get(&parameter).map_or(&node.place, |parameter| &parameter.place);
-        let message = format!("{}: law {:?} needs {rule}", table.what, law.name);
-        table.ctx.refuse(place.refuse(RefusalKind::Rule, message).label(format!("change `{parameter}`")));
+        let message = format!("{}: law {} needs {rule}", table.what, law.quoted());
+        table.ctx.refuse(place.refuse(RefusalKind::Rule, message).label(change(&parameter)));
     }
 }
 

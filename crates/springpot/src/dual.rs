@@ -41,6 +41,9 @@ pub trait Real:
     /// The number without its derivative.
     fn value(self) -> f64;
 
+    /// Its derivative; 0 of a plain number.
+    fn slope(self) -> f64;
+
     /// The number, its derivative where that is asked for.
     fn of(number: Dual) -> Self;
 
@@ -142,6 +145,10 @@ impl Real for f64 {
         self
     }
 
+    fn slope(self) -> f64 {
+        0.0
+    }
+
     fn of(number: Dual) -> Self {
         number.value
     }
@@ -170,6 +177,10 @@ impl Real for f64 {
 impl Real for Dual {
     fn value(self) -> f64 {
         self.value
+    }
+
+    fn slope(self) -> f64 {
+        self.slope
     }
 
     fn of(number: Dual) -> Self {

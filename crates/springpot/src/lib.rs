@@ -96,6 +96,7 @@ pub mod motion;
 pub mod names;
 pub mod observe;
 pub mod optimisation;
+mod quadrature;
 mod random;
 pub mod signal;
 pub mod spatial;

@@ -132,10 +132,45 @@ fn the_file_of_a_table_is_named_and_refused() {
         ("parameters={ k = 100 }", &["needs the parameter pad", "columns x and F"]),
         ("network=\"parallel(spring(pad), table(pad))\"", &["`pad` is a file here, but a number before"]),
         ("network=\"parallel(table(pad), spring(pad))\"", &["`pad` is a number here, but a file before"]),
-        ("network=\"series(spring(k), table(pad, k))\"", &["`table` takes 1 names, not 2", "table(file)"]),
+        ("network=\"series(spring(k), table(pad, k))\"", &["`table` takes 1 name, not 2", "table(file)"]),
     ] {
         refused(&place, set, words);
     }
+}
+
+#[test]
+fn a_text_says_the_force_of_a_leaf() {
+    let place = with(
+        "network = \"parallel(expression(f), dashpot(c))\"\nparameters = { f = \"k*x + b*x^3\", k = \"3 kN/m\", b = 5e4, c = 5 }\n",
+    );
+    place.done(&["run", "arm.toml"]);
+    place.done(&["run", "arm.toml", "--set", "element.damper.f=\"k*sinh(x/b)\"", "--set", "element.damper.b=1 cm"]);
+    place.done(&["run", "arm.toml", "--sweep", "element.damper.k=1 kN/m,2 kN/m"]);
+    for (set, words) in [
+        ("f=\"k*x + b*y\"", &["needs the parameters y", "y [a number]: parameter of an expression"][..]),
+        ("f=\"k*x*t + b\"", &["`f` of `network`", "`t` has no place here"]),
+        ("f=\"k*x + b*sine(x)\"", &["did you mean `sin`?"]),
+        ("f=\"k*x\"", &["unknown key `b`"]),
+        ("f=3", &["must be an expression in quotes, not the number 3", "k*x + c*v"]),
+        ("parameters={ k = 3, c = 5 }", &["needs the parameter f"]),
+        ("b=\"5 bananas\"", &["bananas"]),
+        ("c=\"5 N\"", &["`c` of `parameters`"]),
+        ("network='expression(\"k*x\", k, b)'", &["--set:1:", "`b` does not occur"]),
+    ] {
+        refused(&place, set, words);
+    }
+    // Friction that turns round at once finds no way where it should stick.
+    let place = Place::with(
+        "[robot]\n[[robot.body]]\nname = \"slide\"\nmass = 2\n\
+         joint = { name = \"s\", kind = \"prismatic\", axis = [1, 0, 0] }\n\
+         [[element]]\nname = \"e\"\njoint = \"s\"\nnetwork = \"expression(f)\"\n\
+         parameters = { f = \"k*x + mu*sign(v)\", k = \"0.3 kN/m\", mu = \"2 N\" }\n\
+         [motion]\nkind = \"forward\"\nstart = { v = { s = 0.3 } }\n[time]\nend = 1\noutput_step = 0.1\n",
+    );
+    let failed = place.springpot(&["run", "arm.toml"]);
+    assert_eq!(failed.code, Some(1), "{}", failed.stderr);
+    assert!(failed.said().contains("arm.toml:10:"), "{}", failed.stderr);
+    assert!(failed.said().contains("jumps again and again without getting on"), "{}", failed.stderr);
 }
 
 #[test]

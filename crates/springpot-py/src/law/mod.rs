@@ -146,7 +146,7 @@ impl PyLaw {
         definition_name(self.derivative)
     }
 
-    /// Parameters, SI; those that are tables as tuples of strokes and forces.
+    /// Parameters, SI; those that are tables as tuples of strokes and forces, those that are expressions as texts.
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let words = PyDict::new(py);
@@ -159,6 +159,7 @@ impl PyLaw {
         for (name, x, force) in self.made_of.tables() {
             words.set_item(name, (x, force))?;
         }
+        self.made_of.texts().try_for_each(|(name, text)| words.set_item(name, text))?;
         Ok(words)
     }
 
@@ -245,6 +246,7 @@ impl PyLaw {
                 (all, _) => format!("{}={all:?}", param.name),
             });
         let tables = self.made_of.tables().map(|(name, x, _)| format!("{name}=<{} points>", x.len()));
+        let tables = tables.chain(self.made_of.texts().map(|(name, text)| format!("{name}={text:?}")));
         let derivative = std::iter::once(format!("derivative=\"{}\"", definition_name(self.derivative)));
         let words = values.chain(tables).chain(derivative).collect::<Vec<_>>().join(", ");
         format!("Law(\"{}\", {words})", self.entry.name)

@@ -9,6 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 use springpot::law::{Derivative, Entry, NetworkText, Param, Table};
 use springpot_scenario::suggest;
+use springpot_scenario::units::{Unit, split_quantity};
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -22,8 +23,10 @@ pub(crate) struct Description {
     pub(crate) name: Option<String>,
     is_network: bool,
     text: String,
-    /// SI numbers, lists of them, or points of a table.
+    /// SI numbers, lists of them, points of a table, or expressions.
     values: Vec<(String, Value)>,
+    /// Units of parameters that expressions alone name.
+    units: Vec<(String, String)>,
     derivative: Derivative,
     entry: Option<Arc<Entry>>,
 }
@@ -34,6 +37,8 @@ enum Value {
     List(Vec<f64>),
     /// x and F of a leaf `table`.
     Points(Vec<f64>, Vec<f64>),
+    /// The text of a leaf `expression`.
+    Text(String),
 }
 
 /// Reads a description, or a `Law`.
@@ -70,15 +75,20 @@ pub(crate) fn described(said: &Bound<'_, PyAny>) -> PyResult<Description> {
                 let help = suggest(&text, CATALOG.entries().iter().map(|entry| &*entry.name).collect::<Vec<_>>());
                 return Err(value_error(format!("there is no law \"{text}\"; {help}")));
             };
-            let values = values(&entry.params, &[], &parameters)?;
-            Ok(Description { name, is_network: false, text, values, derivative, entry: Some(entry.clone()) })
+            let values = values(&entry.params, (&[], &[]), &parameters)?;
+            let (units, entry) = (Vec::new(), Some(entry.clone()));
+            Ok(Description { name, is_network: false, text, values, units, derivative, entry })
         }
         (None, Some(network)) => {
             let text: String = network.extract().map_err(|_| type_error("network must be a text"))?;
-            let read = parse(&text)?;
+            let (read, mut words) = with_texts(parse(&text)?, &parameters)?;
+            let units = units(&read, &parameters)?;
+            let read = with_units(read, &units);
             let files: Vec<String> = read.files().map(str::to_owned).collect();
-            let values = values(&read.entry().params, &files, &parameters)?;
-            Ok(Description { name, is_network: true, text, values, derivative, entry: None })
+            let texts: Vec<String> = read.texts().map(str::to_owned).collect();
+            let mut values = values(&read.entry().params, (&files, &texts), &parameters)?;
+            values.append(&mut words);
+            Ok(Description { name, is_network: true, text, values, units, derivative, entry: None })
         }
         _ => Err(value_error("a law needs either \"law\" or \"network\"")),
     }
@@ -94,6 +104,48 @@ fn parse(text: &str) -> PyResult<NetworkText> {
     })
 }
 
+/// The network with the expressions that its parameters say, and these.
+fn with_texts(network: NetworkText, given: &Bound<'_, PyDict>) -> PyResult<(NetworkText, Vec<(String, Value)>)> {
+    let names: Vec<String> = network.texts().map(str::to_owned).collect();
+    names.into_iter().try_fold((network, Vec::new()), |(network, mut words), name| {
+        let missing = || {
+            value_error(format!(
+                "the expression \"{name}\" is missing: a text of the stroke x, its rate v and parameters"
+            ))
+        };
+        let text = given.get_item(&name)?.ok_or_else(missing)?;
+        let text: String =
+            text.extract().map_err(|_| type_error(format!("{name} must be a text, such as \"k*x + c*v\"")))?;
+        let network = with_text(network, &name, &text)?;
+        words.push((name, Value::Text(text)));
+        Ok((network, words))
+    })
+}
+
+fn with_text(network: NetworkText, name: &str, text: &str) -> PyResult<NetworkText> {
+    network.with_text(name, text).map_err(|error| match error.span() {
+        Some(span) => value_error(format!("{name}, character {}: {error}", span.start + 1)),
+        None => value_error(format!("{name}: {error}")),
+    })
+}
+
+/// The SI units of parameters that expressions alone name, as they are given.
+fn units(network: &NetworkText, given: &Bound<'_, PyDict>) -> PyResult<Vec<(String, String)>> {
+    let mut units = Vec::new();
+    for name in network.open() {
+        let Some(value) = given.get_item(name)? else { continue };
+        let Ok(text) = value.extract::<String>() else { continue };
+        let unit = split_quantity(&text).map_or("", |(_, unit)| unit);
+        let unit = Unit::parse(unit, &|_| None).map_err(|error| value_error(format!("{name}: {error}")))?;
+        units.push((name.to_owned(), unit.si_name()));
+    }
+    Ok(units)
+}
+
+fn with_units(network: NetworkText, units: &[(String, String)]) -> NetworkText {
+    units.iter().fold(network, |network, (name, unit)| network.with_unit(name, unit))
+}
+
 /// The definition of that name.
 pub(crate) fn derivative(name: &Bound<'_, PyAny>) -> PyResult<Derivative> {
     let name: String = name.extract().map_err(|_| type_error("derivative must be a text"))?;
@@ -103,8 +155,13 @@ pub(crate) fn derivative(name: &Bound<'_, PyAny>) -> PyResult<Derivative> {
 }
 
 /// Parameters in SI, in the order of the law; what is left out has its default.
-fn values(params: &[Param], files: &[String], given: &Bound<'_, PyDict>) -> PyResult<Vec<(String, Value)>> {
-    let known: Vec<&str> = params.iter().map(|param| &*param.name).chain(files.iter().map(String::as_str)).collect();
+fn values(
+    params: &[Param],
+    (files, texts): (&[String], &[String]),
+    given: &Bound<'_, PyDict>,
+) -> PyResult<Vec<(String, Value)>> {
+    let words = files.iter().chain(texts).map(String::as_str);
+    let known: Vec<&str> = params.iter().map(|param| &*param.name).chain(words).collect();
     for key in given.keys() {
         let key: String = key.extract()?;
         if !known.contains(&key.as_str()) {
@@ -183,6 +240,14 @@ impl Description {
         })
     }
 
+    /// Names and texts of its expressions.
+    pub(super) fn texts(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.values.iter().filter_map(|(name, value)| match value {
+            Value::Text(text) => Some((name.as_str(), text.as_str())),
+            _ => None,
+        })
+    }
+
     /// The law that it describes.
     pub(crate) fn build(self) -> PyResult<PyLaw> {
         let entry = match &self.entry {
@@ -203,13 +268,16 @@ impl Description {
                         text = text.with_table(file, table);
                     }
                 }
-                Arc::new(text.entry())
+                for (name, source) in self.texts() {
+                    text = with_text(text, name, source)?;
+                }
+                Arc::new(with_units(text, &self.units).entry())
             }
         };
         let numbers = self.values.iter().filter_map(|(_, value)| match value {
             Value::One(value) => Some(vec![*value]),
             Value::List(values) => Some(values.clone()),
-            Value::Points(..) => None,
+            Value::Points(..) | Value::Text(_) => None,
         });
         let values: Vec<Vec<f64>> = numbers.collect();
         let built = entry.build(&values.concat(), self.derivative);
@@ -228,8 +296,13 @@ impl Description {
         }
         words.set_item(if self.is_network { "network" } else { "law" }, &self.text)?;
         for (name, value) in &self.values {
+            let unit = self.units.iter().find(|(own, unit)| own == name && !unit.is_empty());
             match value {
-                Value::One(value) => parameters.set_item(name, value)?,
+                Value::One(value) => match unit {
+                    Some((_, unit)) => parameters.set_item(name, format!("{value:?} {unit}"))?,
+                    None => parameters.set_item(name, value)?,
+                },
+                Value::Text(text) => parameters.set_item(name, text)?,
                 Value::List(values) => parameters.set_item(name, values)?,
                 Value::Points(x, force) => parameters.set_item(name, (x, force))?,
             }

@@ -217,8 +217,12 @@ fn why_no_ledger(system: &System, report: &Report) -> Option<String> {
         return Some(format!("element \"{}\" has a named scheme, which keeps no account of energy", element.name));
     }
     let starts = system.element_starts().unwrap_or_default();
-    let singular = system.elements.iter().zip(&starts).find(|(_, start)| start.singular);
-    Some(singular.map_or("an energy is not finite".into(), |(element, _)| {
-        format!("element \"{}\" starts with x(0) != 0 and the Riemann-Liouville derivative", element.name)
+    let hidden = system.elements.iter().zip(&starts).find(|(_, start)| start.hides_energy);
+    Some(hidden.map_or("an energy is not finite".into(), |(element, start)| {
+        let why = match start.singular {
+            true => "starts with x(0) != 0 and the Riemann-Liouville derivative",
+            false => "has an expression of which nobody knows what it stores",
+        };
+        format!("element \"{}\" {why}", element.name)
     }))
 }

@@ -1,7 +1,7 @@
 //! Dotted paths into a scenario: `element.strut.alpha`, `solver.rtol`, `robot.body.forearm.mass`.
 
 use crate::keys::{COMPONENT, COMPONENTS, ELEMENT, Keys, Shape, vector};
-use crate::reader::element::{files_of, kind_of, law_of};
+use crate::reader::element::{kind_of, law_of, words_of};
 use crate::reader::{Context, Read};
 use crate::text::document::{Entry, Node, Value, shorten};
 use crate::text::names;
@@ -316,7 +316,7 @@ fn section_of(ctx: &Context<'_>, element: &Node, keys: &Keys, key: &str) -> Opti
         return None;
     }
     let law = law_of(ctx, element)?;
-    if law.params.iter().any(|param| param.name == key) || files_of(element).iter().any(|file| file == key) {
+    if law.params.iter().any(|param| param.name == key) || words_of(element).iter().any(|word| word == key) {
         Some("parameters")
     } else if law.inputs.iter().any(|input| input.name == key) {
         Some("inputs")
@@ -335,7 +335,7 @@ fn names_of_element(ctx: &Context<'_>, element: &Node, keys: &Keys) -> Option<Ve
     let parameters = law.params.iter().map(|param| &*param.name);
     let inputs = law.inputs.iter().map(|input| &*input.name);
     let names = parameters.chain(inputs).chain(keys.names()).map(str::to_owned);
-    Some(names.chain(files_of(element)).collect())
+    Some(names.chain(words_of(element)).collect())
 }
 
 /// What stands where `target` leads.

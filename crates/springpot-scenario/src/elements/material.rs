@@ -2,11 +2,12 @@
 
 use crate::csv;
 use crate::elements::heat;
+use crate::reader::element::with_units;
 use crate::reader::{Field, Read, Refused, Table, all};
 use crate::signals::feedback;
 use crate::signals::of_time::{Wanted, celsius, how_outside, interval};
 use crate::signals::plan::SignalPlan;
-use crate::text::document::shorten;
+use crate::text::document::{Node, shorten};
 use crate::text::names;
 use crate::text::refusal::RefusalKind;
 use crate::time::Duration;
@@ -26,6 +27,16 @@ pub(crate) const TABLE: &str = "table";
 
 /// Parameters that are names of files, and these.
 type Files = Vec<(String, String)>;
+
+/// A law as it is written.
+struct Law {
+    entry: Arc<Entry>,
+    files: Files,
+    /// Parameters that are texts of expressions.
+    texts: Vec<String>,
+    /// Parameters whose unit is that in which they are written.
+    open: Vec<String>,
+}
 
 /// The law of an element, its parameters (SI, in the order of the law), and its inputs.
 pub(crate) struct Material {
@@ -51,8 +62,8 @@ pub(crate) enum InputsOf<'t> {
 
 /// Reads `law` or `network`, `parameters` and `inputs`, in the units of a rotation where it is one.
 pub(crate) fn read(table: &Table<'_>, is_rotation: bool, with: InputsOf<'_>) -> Read<Material> {
-    let (law, files) = match (table.get("law"), table.get("network")) {
-        (Some(law), None) => (by_name(&law)?, Vec::new()),
+    let Law { entry: law, files, texts, open } = match (table.get("law"), table.get("network")) {
+        (Some(law), None) => by_name(&law)?,
         (None, Some(network)) => of_text(&network, table.get("parameters").as_ref())?,
         (Some(_), Some(network)) => {
             let message = "stands beside a `law`";
@@ -60,10 +71,11 @@ pub(crate) fn read(table: &Table<'_>, is_rotation: bool, with: InputsOf<'_>) -> 
         }
         (None, None) => return Err(table.missing("law", "law = \"…\" or network = \"…\"")),
     };
-    let law = if is_rotation { Arc::new(on_rotation(&law)) } else { law };
+    let law = if is_rotation { Arc::new(on_rotation(&law, &open)) } else { law };
     let lists = Lists::read(table, &law)?;
     let law = if law.has_lists() { Arc::new(law.with_lists(lists.length)) } else { law };
-    let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+    let names: Vec<&str> =
+        files.iter().map(|(name, _)| name.as_str()).chain(texts.iter().map(String::as_str)).collect();
     // What the parameters lack is told beside what is wrong with the heat.
     let parameters = parameters(table, &law, &lists, &names);
     let heat = heat::read(table, is_rotation)?;
@@ -73,10 +85,11 @@ pub(crate) fn read(table: &Table<'_>, is_rotation: bool, with: InputsOf<'_>) -> 
     Ok(Material { law, cold, heat, is_network: table.get("network").is_some(), files, parameters, inputs })
 }
 
-/// The law where it acts on an angle: N reads N·m and m reads rad.
-fn on_rotation(law: &Entry) -> Entry {
+/// The law where it acts on an angle: N reads N·m and m reads rad, but for parameters whose unit is `open`.
+fn on_rotation(law: &Entry, open: &[String]) -> Entry {
     let mut law = law.clone();
-    let units = law.params.iter_mut().map(|param| &mut param.unit);
+    let said = law.params.iter_mut().filter(|param| !open.iter().any(|open| *open == param.name));
+    let units = said.map(|param| &mut param.unit);
     for unit in units.chain(law.inputs.iter_mut().map(|input| &mut input.unit)) {
         *unit = unit_on_rotation(unit).into();
     }
@@ -105,17 +118,18 @@ fn unit_on_rotation(unit: &str) -> String {
     turned
 }
 
-fn by_name(field: &Field<'_>) -> Read<Arc<Entry>> {
+fn by_name(field: &Field<'_>) -> Read<Law> {
     let name = field.text()?;
-    field.ctx.catalog.get(name).cloned().ok_or_else(|| {
+    let entry = field.ctx.catalog.get(name).cloned().ok_or_else(|| {
         let laws = field.ctx.catalog.entries().iter().map(|entry| &*entry.name);
         let message = format!("is {:?}, which is no law", shorten(name));
         field.refuse(RefusalKind::UnknownName, message, Some(names::suggest(name, laws)))
-    })
+    })?;
+    Ok(Law { entry, files: Vec::new(), texts: Vec::new(), open: Vec::new() })
 }
 
-/// A network with the tables of its files, and these by the names of their parameters.
-fn of_text(field: &Field<'_>, parameters: Option<&Field<'_>>) -> Read<(Arc<Entry>, Files)> {
+/// A network with the tables of its files and its expressions.
+fn of_text(field: &Field<'_>, parameters: Option<&Field<'_>>) -> Read<Law> {
     let text = field.text()?;
     let mut network = NetworkText::parse(text).map_err(|NetworkTextError { message, span, help, unknown }| {
         let refusal = field.node.place_in_text(Some(span)).refuse(RefusalKind::BadName, format!("{field}: {message}"));
@@ -124,28 +138,12 @@ fn of_text(field: &Field<'_>, parameters: Option<&Field<'_>>) -> Read<(Arc<Entry
     })?;
     let names: Vec<String> = network.files().map(str::to_owned).collect();
     let files = all(names.into_iter().map(|name| {
-        let Some(node) = parameters.and_then(|parameters| parameters.node.get(&name)) else {
-            let place = parameters.map_or(&field.node.place, |parameters| &parameters.node.place);
-            let message = format!("{field} needs the parameter {name}");
-            let refusal = place.refuse(RefusalKind::Missing, message).label("missing parameter");
-            return Err(field
-                .ctx
-                .refuse(refusal.help(format!("{name} = \"FILE\": a CSV file with the columns x and F"))));
-        };
-        let what = format!("`{name}` of {field}");
-        let given = Field { node, key: "parameters", ..field.clone() };
-        let Some(file) = node.text() else {
-            let message = format!("{what} must be the name of a file, not {} {}", node.kind(), node.written());
-            let refusal = node.place.refuse(RefusalKind::WrongType, message);
-            return Err(given
-                .ctx
-                .refuse(refusal.help("write the name of a CSV file with the columns x and F, m and N")));
-        };
+        let Word { what, node, text: file, .. } = word(field, parameters, &name, FILE)?;
         let unusable = |why: String| {
             let refusal = node.place.refuse(RefusalKind::File, format!("{what} cannot be used: {why}"));
-            given.ctx.refuse(refusal)
+            field.ctx.refuse(refusal)
         };
-        let columns = csv::columns(&given.ctx.folder.join(file), &["x", "F"], MAX_TABLE);
+        let columns = csv::columns(&field.ctx.folder.join(file), &["x", "F"], MAX_TABLE);
         let columns = columns.map_err(|error| unusable(error.to_string()))?;
         let points = columns[0].iter().copied().zip(columns[1].iter().copied());
         let table = LawTable::new(points).map_err(|error| unusable(format!("{file}: {error}")))?;
@@ -154,7 +152,53 @@ fn of_text(field: &Field<'_>, parameters: Option<&Field<'_>>) -> Read<(Arc<Entry
     for (name, _, table) in &files {
         network = network.with_table(name, table.clone());
     }
-    Ok((Arc::new(network.entry()), files.into_iter().map(|(name, file, _)| (name, file)).collect()))
+    let texts: Vec<String> = network.texts().map(str::to_owned).collect();
+    for name in &texts {
+        let Word { what, node, text } = word(field, parameters, name, EXPRESSION)?;
+        network = network.with_text(name, text).map_err(|error| {
+            let refusal = node.place_in_text(error.span()).refuse(RefusalKind::BadQuantity, format!("{what}: {error}"));
+            field.ctx.refuse(refusal.help(format!("it is {}", EXPRESSION[2])))
+        })?;
+    }
+    let network = with_units(network, parameters.map(|parameters| parameters.node));
+    let open = network.open().map(str::to_owned).collect();
+    let files = files.into_iter().map(|(name, file, _)| (name, file)).collect();
+    Ok(Law { entry: Arc::new(network.entry()), files, texts, open })
+}
+
+/// What a parameter that is a text is: in a word, as an example, and in words.
+type Kind = [&'static str; 3];
+const FILE: Kind = ["the name of a file", "FILE", "a CSV file with the columns x and F, m and N"];
+const EXPRESSION: Kind =
+    ["an expression in quotes", "k*x + c*v", "an expression of the stroke x, its rate v and parameters"];
+
+/// A parameter that is a text.
+struct Word<'a> {
+    what: String,
+    node: &'a Node,
+    text: &'a str,
+}
+
+/// The parameter of a network that is this `kind` of text.
+fn word<'a>(
+    field: &Field<'_>,
+    parameters: Option<&Field<'a>>,
+    name: &str,
+    [kind, example, words]: Kind,
+) -> Read<Word<'a>> {
+    let right = || format!("{name} = \"{example}\": {words}");
+    let Some(node) = parameters.and_then(|parameters| parameters.node.get(name)) else {
+        let place = parameters.map_or(&field.node.place, |parameters| &parameters.node.place);
+        let refusal = place.refuse(RefusalKind::Missing, format!("{field} needs the parameter {name}"));
+        return Err(field.ctx.refuse(refusal.label("missing parameter").help(right())));
+    };
+    let what = format!("`{name}` of {field}");
+    let Some(text) = node.text() else {
+        let message = format!("{what} must be {kind}, not {} {}", node.kind(), node.written());
+        let refusal = node.place.refuse(RefusalKind::WrongType, message);
+        return Err(field.ctx.refuse(refusal.help(right())));
+    };
+    Ok(Word { what, node, text })
 }
 
 /// The parameters of a law that are lists.
@@ -252,7 +296,7 @@ fn parameters<'a>(table: &Table<'a>, law: &'a Entry, lists: &Lists, files: &[&st
     known.extend(files);
     let field = table.get("parameters");
     let open = field.as_ref().map(|field| {
-        let what = format!("`parameters` of {} (law {:?})", table.what, law.name);
+        let what = format!("`parameters` of {} (law {})", table.what, law.quoted());
         Table::open(field.ctx, field.node, what, &known)
     });
     let given = open.transpose()?;
@@ -269,7 +313,7 @@ fn parameters<'a>(table: &Table<'a>, law: &'a Entry, lists: &Lists, files: &[&st
         let right: Vec<String> =
             missing.iter().map(|param| describe(list_of(&param.name), &param.unit, &param.meaning)).collect();
         let place = field.as_ref().map_or(&table.node.place, |field| &field.node.place);
-        let message = format!("{}: law {:?} needs the parameters {}", table.what, law.name, names::list(untold));
+        let message = format!("{}: law {} needs the parameters {}", table.what, law.quoted(), names::list(untold));
         let refusal = place.refuse(RefusalKind::Missing, message).label("missing parameters");
         Some(table.ctx.refuse(refusal.help(right.join("; "))))
     };
@@ -341,7 +385,7 @@ fn inputs<'a>(table: &Table<'a>, law: &'a Entry, heat: &Heat, with: InputsOf<'_>
     let names: Vec<&str> = law.inputs.iter().map(|input| &*input.name).collect();
     let field = table.get("inputs");
     let open = field.as_ref().map(|field| {
-        let what = format!("`inputs` of {} (law {:?})", table.what, law.name);
+        let what = format!("`inputs` of {} (law {})", table.what, law.quoted());
         let beside_thermal = |key: &str| {
             let why = || {
                 (
@@ -363,7 +407,7 @@ fn inputs<'a>(table: &Table<'a>, law: &'a Entry, heat: &Heat, with: InputsOf<'_>
             missing.iter().map(|input| describe(&input.name, &input.unit, &input.meaning)).collect();
         let place = field.as_ref().map_or(&table.node.place, |field| &field.node.place);
         let message =
-            format!("{}: law {:?} needs the inputs {}", table.what, law.name, names::list(untold.iter().copied()));
+            format!("{}: law {} needs the inputs {}", table.what, law.quoted(), names::list(untold.iter().copied()));
         let refusal = place.refuse(RefusalKind::Missing, message).label("missing inputs");
         let mut help = right.join("; ");
         if !heat.is_none() && untold.contains(&TEMPERATURE) {

@@ -148,7 +148,7 @@ impl Material {
         law.build(&parameters, Derivative::Caputo).map_err(|RuleError { rule, parameter }| {
             let place =
                 node.get("parameters").and_then(|all| all.get(&parameter)).map_or(&node.place, |one| &one.place);
-            let message = format!("{}: law {:?} needs {rule}", table.what, law.name);
+            let message = format!("{}: law {} needs {rule}", table.what, law.quoted());
             ctx.refuse(place.refuse(RefusalKind::Rule, message).label(format!("change `{parameter}`")))
         })?;
         Ok((law, cold, heat, parameters, inputs))

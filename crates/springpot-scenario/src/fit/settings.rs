@@ -46,16 +46,14 @@ pub(super) fn read(root: &Table<'_>) -> Read<FitSettings> {
                 }
                 Some(_) => Ok(text.to_owned()),
                 None if text.contains('(') => match NetworkText::parse(text) {
-                    Ok(network) if network.files().next().is_none() && !network.clone().entry().has_lists() => {
-                        Ok(text.to_owned())
-                    }
+                    Ok(network) if is_of_numbers(&network) => Ok(text.to_owned()),
                     Ok(_) => {
-                        let message = format!("holds {:?}, which has a table or a list", shorten(text));
-                        Err(item.refuse(
-                            RefusalKind::Rule,
-                            message,
-                            Some("write a network of single numbers".to_owned()),
-                        ))
+                        let message = format!(
+                            "holds {:?}, which has a table, a list or an expression whose parameters have no unit",
+                            shorten(text)
+                        );
+                        let help = "write a network of single numbers whose units its leaves say".to_owned();
+                        Err(item.refuse(RefusalKind::Rule, message, Some(help)))
                     }
                     Err(NetworkTextError { message, span, help, unknown }) => {
                         let refusal = item.node.place_in_text(Some(span));
@@ -90,4 +88,10 @@ pub(super) fn read(root: &Table<'_>) -> Read<FitSettings> {
         }
     }
     Ok(settings)
+}
+
+/// Whether all that a network names is single numbers of a known size.
+fn is_of_numbers(network: &NetworkText) -> bool {
+    let words = network.files().chain(network.texts()).chain(network.open());
+    words.count() == 0 && !network.clone().entry().has_lists()
 }

@@ -64,6 +64,7 @@ impl Plan {
                 Some(signal) => (self.said(signal).map(|(place, _)| place), None),
                 None => (self.motion.place_of_controller().cloned(), None),
             },
+            RunError::ForceChatter { element: name, .. } => (place_of(element(name)), None),
             RunError::InputRange { element: name, input, low, high, .. } => {
                 let plan = element(name);
                 let input = plan.and_then(|plan| plan.input(input)).map(|input| input.place.clone());

@@ -56,24 +56,31 @@ fn check_name(field: &Field<'_>) -> Read<()> {
 /// A number in any unit, SI, and its SI unit.
 fn value(field: &Field<'_>) -> Read<(f64, String)> {
     let none = |_: &str| None;
-    let si = |unit: &str| Unit::parse(unit, &none).map_or_else(|_| String::new(), |unit| unit.si_name());
-    let (value, unit) = match &field.node.value {
-        Value::Number { value, .. } => (*value, String::new()),
+    let value = match &field.node.value {
+        Value::Number { value, .. } => *value,
         Value::Text(text) => {
             let unit = units::split_quantity(text).map_or("", |(_, unit)| unit);
-            (units::parse_quantity(text, unit, &none).map_err(|error| misread(field, &error))?, si(unit))
+            units::parse_quantity(text, unit, &none).map_err(|error| misread(field, &error))?
         }
-        Value::Table(_) => {
-            let unit = field.node.get("unit").and_then(|unit| unit.text()).map_or_else(String::new, si);
-            (expression(field, None, &none)?, unit)
-        }
+        Value::Table(_) => expression(field, None, &none)?,
         _ => return Err(field.wrong_type(RIGHT)),
     };
     if value.is_finite() {
-        return Ok((value, unit));
+        return Ok((value, unit_of(field.node)));
     }
     let message = format!("is {}, not a finite number", field.node.label());
     Err(field.refuse(RefusalKind::OutOfRange, message, Some(format!("write {RIGHT}"))))
+}
+
+/// The SI unit of a number, whatever unit it is written in; empty where it is none, or no number.
+pub(crate) fn unit_of(node: &Node) -> String {
+    let unit = match &node.value {
+        Value::Text(text) => units::split_quantity(text).map(|(_, unit)| unit),
+        Value::Table(_) => node.get("unit").and_then(|unit| unit.text()),
+        _ => None,
+    };
+    let unit = unit.and_then(|unit| Unit::parse(unit, &|_| None).ok());
+    unit.map_or_else(String::new, |unit| unit.si_name())
 }
 
 fn misread(field: &Field<'_>, error: &UnitError) -> crate::reader::Refused {

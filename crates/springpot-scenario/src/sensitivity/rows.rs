@@ -349,7 +349,7 @@ fn law(gather: &mut Gather, scene: &Scene<'_>, steps: &[Step], slope: Slope) -> 
     for e in elements(scene, steps) {
         let plan = &scene.plan.elements[e];
         let Some(k) = plan.element.entry.params.iter().position(|param| param.name == name) else {
-            return Err(format!("law {:?} has no number `{name}`", plan.element.entry.name));
+            return Err(format!("law {} has no number `{name}`", plan.element.entry.quoted()));
         };
         let is_order = name == "alpha" || name.starts_with("alpha_") && plan.element.entry.params[k].unit.is_empty();
         let is_at_an_end = plan.parameters[k] == 0.0 || plan.parameters[k] == 1.0;

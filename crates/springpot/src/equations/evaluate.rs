@@ -235,7 +235,7 @@ impl Element {
     /// # Errors
     /// [`RunError::Heat`] where it warms itself by what nobody knows: a start that takes infinite work, or begins as steeply.
     pub(crate) fn check_start(&self, state: &State) -> Result<(), RunError> {
-        if !self.law.is_thermal() || state.is_accounted() {
+        if !self.law.is_thermal() || state.has_finite_work() {
             return Ok(());
         }
         let why = "a temperature of its own needs to know what is lost, and a jump to the stroke at t = 0 does not \

@@ -229,9 +229,19 @@ impl Equations {
         self.friction.changes() || self.may_have_jumped() || self.switches()
     }
 
-    /// Whether the step ends on a kink of a force, which is forgotten.
-    pub(crate) fn take_kink(&mut self) -> bool {
-        std::mem::take(&mut self.changes.is_at_kink)
+    /// Whether the step up to `t` ends on a kink of a force, which is forgotten; `end` is that of the run.
+    ///
+    /// # Errors
+    /// [`RunError::ForceChatter`] where a force jumps to and fro.
+    pub(crate) fn take_kink(&mut self, system: &System, t: f64, end: f64) -> Result<bool, RunError> {
+        let may_jump = self.may_have_jumped();
+        let is_at_kink = std::mem::take(&mut self.changes.is_at_kink);
+        let Some((count, span)) = may_jump.then(|| self.kinks.count_jump(t, end)).flatten() else {
+            return Ok(is_at_kink);
+        };
+        let mut jumping = self.kinks.elements().iter().map(|&e| &system.elements[e]);
+        let element = jumping.find(|element| element.law.jumps()).map_or(String::new(), |element| element.name.clone());
+        Err(RunError::ForceChatter { t, element, count, span })
     }
 
     /// Whether control leaves a branch at the end of the step, or at its start.

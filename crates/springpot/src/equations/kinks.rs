@@ -15,6 +15,10 @@ const SHARE: f64 = 1e-8;
 /// The same where it is rounding, in units of that of the stroke.
 const ROUNDINGS: f64 = 16.0;
 
+/// Most jumps of which each is this share of the run or less behind the one before.
+const MOST_JUMPS: u32 = 1_000;
+const CHATTER: f64 = 1e-6;
+
 /// A kink that a step comes upon.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Kink {
@@ -41,6 +45,8 @@ pub(crate) struct Kinks {
     guards: Vec<Guard>,
     /// Whether forces may jump there.
     may_jump: bool,
+    /// Jumps that follow each other closely: the first, the last, and how many.
+    jumps: Option<(f64, f64, u32)>,
 }
 
 impl Kinks {
@@ -54,6 +60,7 @@ impl Kinks {
             elements: elements.map(|(e, _)| e).collect(),
             guards: Vec::new(),
             may_jump: system.elements.iter().any(|element| element.law.jumps()),
+            jumps: None,
         }
     }
 
@@ -65,6 +72,16 @@ impl Kinks {
     /// Whether what follows a kink starts anew, since a force may jump there.
     pub(crate) fn may_jump(&self) -> bool {
         self.may_jump
+    }
+
+    /// Counts a jump at `t` of a run up to `end`; how many there were and within what time, s, where there is no end of them.
+    pub(crate) fn count_jump(&mut self, t: f64, end: f64) -> Option<(u32, f64)> {
+        let (first, count) = match self.jumps {
+            Some((first, last, count)) if t - last <= CHATTER * end => (first, count + 1),
+            _ => (t, 1),
+        };
+        self.jumps = Some((first, t, count));
+        (count > MOST_JUMPS).then_some((count, t - first))
     }
 
     /// Whether there are none.

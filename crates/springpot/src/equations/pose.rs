@@ -17,8 +17,10 @@ pub struct ElementStart {
     pub stroke: f64,
     /// ∂y/∂q_b, nv values.
     pub gradient: Vec<f64>,
-    /// Whether its energies are unknown: it was unloaded and jumps to x(0) ≠ 0.
+    /// Whether its energies are unknown since it was unloaded and jumps to x(0) ≠ 0.
     pub singular: bool,
+    /// Whether its energies are unknown for that or another reason.
+    pub hides_energy: bool,
     /// Whether its force is infinite then, as that of a springpot is; in series with a spring it is not.
     pub infinite: bool,
 }
@@ -55,9 +57,10 @@ impl System {
         let starts = self.elements.iter().zip(evaluation.elements).map(|(element, state)| {
             let begun = element.begin(state.reading.coordinate, &state.inputs);
             let law = begun.map_err(RunError::of_kernel(&element.name))?;
-            let (singular, infinite) = (!law.is_accounted(), law.is_singular());
+            let (singular, infinite) = (!law.has_finite_work(), law.is_singular());
+            let hides_energy = singular || !law.is_accounted();
             let (length, stroke) = (state.reading.coordinate, state.stroke);
-            Ok(ElementStart { length, stroke, gradient: state.gradient, singular, infinite })
+            Ok(ElementStart { length, stroke, gradient: state.gradient, singular, infinite, hides_energy })
         });
         starts.collect()
     }

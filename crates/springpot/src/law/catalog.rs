@@ -188,6 +188,11 @@ impl Entry {
         Self { params: self.params.iter().flat_map(unfold).collect(), ..self.clone() }
     }
 
+    /// Its name as messages write it, in quotes.
+    pub fn quoted(&self) -> String {
+        if self.name.contains('"') { format!("`{}`", self.name) } else { format!("\"{}\"", self.name) }
+    }
+
     /// Whether a parameter is a list.
     pub fn has_lists(&self) -> bool {
         self.params.iter().any(|param| param.is_list)

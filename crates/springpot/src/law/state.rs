@@ -18,6 +18,8 @@ pub struct StateSize {
 pub struct State {
     memories: Vec<Memory>,
     variables: Vec<f64>,
+    /// A leaf does not know its energies.
+    hides_energy: bool,
     /// What series have worked out for the step under way, one after the other; none before a step was prepared.
     #[serde(skip)]
     ready: Vec<Ready>,
@@ -98,7 +100,17 @@ impl State {
 
     /// Whether all energies are known.
     pub fn is_accounted(&self) -> bool {
+        self.has_finite_work() && !self.hides_energy
+    }
+
+    /// Whether no memory began with infinite work.
+    pub(crate) fn has_finite_work(&self) -> bool {
         self.memories.iter().all(Memory::is_accounted)
+    }
+
+    /// Says that the leaf that begins does not know its energies.
+    pub(super) fn hide_energy(&mut self) {
+        self.hides_energy = true;
     }
 
     /// How large it is.
@@ -110,11 +122,13 @@ impl State {
     pub(super) fn append(&mut self, other: Self) {
         self.memories.extend(other.memories);
         self.variables.extend(other.variables);
+        self.hides_energy |= other.hides_energy;
     }
 
     /// That of a part which has all but the first `variables`.
     pub(super) fn without(&self, variables: usize) -> Self {
-        Self { memories: self.memories.clone(), variables: self.variables[variables..].to_vec(), ..Self::default() }
+        let (memories, hides_energy) = (self.memories.clone(), self.hides_energy);
+        Self { memories, variables: self.variables[variables..].to_vec(), hides_energy, ..Self::default() }
     }
 
     /// The state at time t between two steps.

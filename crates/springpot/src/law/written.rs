@@ -1,27 +1,21 @@
 //! Networks as text: `series(spring(k0), parallel(springpot(c, alpha), slow: dashpot(eta)))`.
 
+mod read;
+
 use super::catalog::{Entry, Param};
 use super::leaf::{Free, Holds, Leaf, LeafBuild, LeafKind, Table};
 use super::network::Network;
 use super::rule::RuleError;
 use crate::dual::Dual;
 use crate::fractional::Kind as Derivative;
-use crate::names::is_name;
+use crate::signal::{ExpressionError, StrokeExpression};
 use std::borrow::Cow;
-use std::ops::Range;
+use std::ops::Range as Span;
 use std::sync::Arc;
 
-/// Most leaves of a network, and how deep it may be nested.
-const MOST_LEAVES: usize = 1_000;
-const DEEPEST: usize = 64;
-
-/// Names that leaves may not have: columns of an element.
-const COLUMNS: [&str; 9] = ["length", "stroke", "rate", "derivative", "force", "Q", "stored", "dissipated", "input"];
-
-const GRAMMAR: &str = "write leaves such as spring(k), or parts in series(…) and parallel(…)";
-
 /// A network as it is written: leaves whose arguments are names of parameters, in series and in parallel. A leaf may be named,
-/// `glass: spring(k0)`; else leaves are `spring1`, `spring2`, `dashpot1`, … in the order they are written.
+/// `glass: spring(k0)`; else leaves are `spring1`, `spring2`, `dashpot1`, … in the order they are written. The leaf `expression` takes its
+/// text in quotes, and then the parameters that it names: `expression("k*x + b*x^3", k, b)`; or the name of a parameter that is the text.
 ///
 /// ```
 /// use springpot::law::{Derivative, NetworkText};
@@ -38,7 +32,24 @@ pub struct NetworkText {
     text: String,
     root: Part,
     params: Vec<Param>,
+    /// Those whose unit no leaf says.
+    open: Vec<usize>,
     files: Vec<TableFile>,
+    texts: Vec<Text>,
+}
+
+/// A parameter that is the text of an expression.
+#[derive(Debug, Clone)]
+struct Text {
+    name: Cow<'static, str>,
+    expression: Option<Said>,
+}
+
+/// An expression, and where its parameters stand among those of the law.
+#[derive(Debug, Clone)]
+struct Said {
+    expression: Arc<StrokeExpression>,
+    params: Vec<usize>,
 }
 
 /// A parameter that is the name of a file.
@@ -55,7 +66,7 @@ pub struct NetworkTextError {
     /// What is wrong.
     pub message: String,
     /// Where, in bytes of the text.
-    pub span: Range<usize>,
+    pub span: Span<usize>,
     /// What would be right.
     pub help: String,
     /// A name that is not known, and those that are.
@@ -64,7 +75,7 @@ pub struct NetworkTextError {
 
 #[derive(Debug, Clone)]
 struct Part {
-    span: Range<usize>,
+    span: Span<usize>,
     kind: PartKind,
 }
 
@@ -82,8 +93,21 @@ enum PartKind {
         build: fn(&Arc<Table>) -> Arc<dyn Leaf>,
         file: usize,
     },
+    /// A leaf from an expression that stands there, or that a text says.
+    Expression {
+        name: Arc<str>,
+        build: fn(&Arc<StrokeExpression>, Vec<Dual>) -> Arc<dyn Leaf>,
+        source: Source,
+    },
     Parallel(Vec<Part>),
     Series(Vec<Part>),
+}
+
+/// Where the expression of a leaf comes from.
+#[derive(Debug, Clone)]
+enum Source {
+    Here(Said),
+    Text(usize),
 }
 
 impl Part {
@@ -102,19 +126,7 @@ impl NetworkText {
     /// # Errors
     /// [`NetworkTextError`] says what is wrong, and where.
     pub fn parse(text: &str) -> Result<Self, NetworkTextError> {
-        let kinds = LeafKind::all().into_iter().map(Arc::new).collect();
-        let mut reader = Reader { text, at: 0, kinds, params: Vec::new(), files: Vec::new(), leaves: Vec::new() };
-        let root = reader.part(0)?;
-        if let Some(rest) = reader.peek() {
-            return Err(reader.error(
-                reader.at..text.len(),
-                format!("nothing may follow the network, not `{rest}`"),
-                GRAMMAR,
-            ));
-        }
-        let root = reader.named(root)?;
-        let files = reader.files.into_iter().map(|name| TableFile { name: name.into(), table: None }).collect();
-        Ok(Self { text: text.trim().to_owned(), root, params: reader.params, files })
+        read::network(text)
     }
 
     /// Parameters that are names of files, each of which has a table; they are none of the law's own.
@@ -130,9 +142,41 @@ impl NetworkText {
         self
     }
 
+    /// Parameters that are texts of expressions; they are none of the law's own, and what they name is.
+    pub fn texts(&self) -> impl Iterator<Item = &str> {
+        self.texts.iter().map(|text| &*text.name)
+    }
+
+    /// Takes the expression of one of its texts; others are passed over. Without it the law cannot be built.
+    ///
+    /// # Errors
+    /// What stands there in place of an expression.
+    pub fn with_text(mut self, text: &str, source: &str) -> Result<Self, ExpressionError> {
+        let expression = Arc::new(StrokeExpression::parse(source)?);
+        if let Some(at) = self.texts.iter().position(|own| own.name == text) {
+            let params = expression.parameters().iter();
+            let params = params.map(|name| read::number(&mut self.params, &mut self.open, name)).collect();
+            self.texts[at].expression = Some(Said { expression, params });
+        }
+        Ok(self)
+    }
+
+    /// Parameters whose unit no leaf says, since only expressions name them: it is that in which they are given.
+    pub fn open(&self) -> impl Iterator<Item = &str> {
+        self.open.iter().map(|at| &*self.params[*at].name)
+    }
+
+    /// Takes the unit of one of those; others are passed over.
+    pub fn with_unit(mut self, parameter: &str, unit: &str) -> Self {
+        if let Some(at) = self.open.iter().find(|at| self.params[**at].name == parameter) {
+            self.params[*at].unit = unit.to_owned().into();
+        }
+        self
+    }
+
     /// A law with the parameters that the network names, in the order it names them.
     pub fn entry(self) -> Entry {
-        let (text, params) = (self.text.clone(), self.params.clone());
+        let (text, params) = (self.text.trim().to_owned(), self.params.clone());
         Entry {
             name: text.clone().into(),
             equation: text.into(),
@@ -146,12 +190,14 @@ impl NetworkText {
     fn build(&self, values: &[Dual], derivative: Derivative) -> Result<Network, RuleError> {
         let network = self.part(&self.root, values, derivative)?;
         if network.holds() == Holds::Never {
-            let names: Vec<&str> = self.params.iter().map(|param| &*param.name).chain(self.files()).collect();
+            let names = self.params.iter().map(|param| &*param.name).chain(self.files()).chain(self.texts());
+            let names: Vec<&str> = names.collect();
             let parameter = names.first().map_or(Cow::Borrowed(""), |name| (*name).to_owned().into());
-            return Err(RuleError {
-                rule: format!("a part that gives a force: one of {} to be positive", names.join(", ")),
-                parameter,
-            });
+            let rule = match &names[..] {
+                [] => "a part that gives a force".to_owned(),
+                names => format!("a part that gives a force: one of {} to be positive", names.join(", ")),
+            };
+            return Err(RuleError { rule, parameter });
         }
         Ok(network)
     }
@@ -175,6 +221,20 @@ impl NetworkText {
                     return Err(RuleError { rule, parameter: parameter.clone() });
                 };
                 Ok(Network::shared(build(table)).named(name))
+            }
+            PartKind::Expression { name, build, source } => {
+                let said = match source {
+                    Source::Here(said) => said,
+                    Source::Text(at) => {
+                        let Text { name: parameter, expression } = &self.texts[*at];
+                        expression.as_ref().ok_or_else(|| {
+                            let rule = format!("the expression that `{parameter}` stands for");
+                            RuleError { rule, parameter: parameter.clone() }
+                        })?
+                    }
+                };
+                let own = said.params.iter().map(|at| values[*at]).collect();
+                Ok(Network::shared(build(&said.expression, own)).named(name))
             }
             PartKind::Parallel(parts) => {
                 let parts = parts.iter().map(|part| self.part(part, values, derivative));
@@ -240,6 +300,10 @@ impl NetworkText {
         match &part.kind {
             PartKind::Leaf { params, .. } => params.first().map_or("".into(), |at| self.params[*at].name.clone()),
             PartKind::Table { file, .. } => self.files[*file].name.clone(),
+            PartKind::Expression { source: Source::Text(at), .. } => self.texts[*at].name.clone(),
+            PartKind::Expression { source: Source::Here(said), .. } => {
+                said.params.first().map_or("".into(), |at| self.params[*at].name.clone())
+            }
             PartKind::Parallel(parts) | PartKind::Series(parts) => {
                 parts.first().map_or("".into(), |part| self.first_parameter(part))
             }
@@ -247,274 +311,6 @@ impl NetworkText {
     }
 }
 
-/// A leaf as it is written.
-struct LeafText {
-    name: Option<(String, Range<usize>)>,
-    kind: Arc<LeafKind>,
-    /// Where its parameters stand among those of the law; of a table where its file stands among the files.
-    params: Vec<usize>,
-}
-
-struct Reader<'a> {
-    text: &'a str,
-    at: usize,
-    kinds: Vec<Arc<LeafKind>>,
-    params: Vec<Param>,
-    files: Vec<String>,
-    leaves: Vec<LeafText>,
-}
-
-/// A part whose leaves are numbers of [`Reader::leaves`].
-struct Unnamed {
-    span: Range<usize>,
-    kind: UnnamedKind,
-}
-
-enum UnnamedKind {
-    Leaf(usize),
-    Parallel(Vec<Unnamed>),
-    Series(Vec<Unnamed>),
-}
-
-impl Reader<'_> {
-    fn error(&self, span: Range<usize>, message: impl Into<String>, help: impl Into<String>) -> NetworkTextError {
-        NetworkTextError { message: message.into(), span, help: help.into(), unknown: None }
-    }
-
-    /// The next character that is no blank, which is then at `self.at`.
-    fn peek(&mut self) -> Option<char> {
-        let rest = &self.text[self.at..];
-        self.at += rest.len() - rest.trim_start().len();
-        self.text[self.at..].chars().next()
-    }
-
-    fn take(&mut self, wanted: char) -> bool {
-        let is_there = self.peek() == Some(wanted);
-        self.at += if is_there { wanted.len_utf8() } else { 0 };
-        is_there
-    }
-
-    /// What stands where something else is wanted.
-    fn found(&mut self) -> (Range<usize>, String) {
-        match self.peek() {
-            None => (self.text.len()..self.text.len(), "the end".to_owned()),
-            Some(c) => (self.at..self.at + c.len_utf8(), format!("`{c}`")),
-        }
-    }
-
-    fn name(&mut self, wanted: &str) -> Result<(String, Range<usize>), NetworkTextError> {
-        self.peek();
-        let rest = &self.text[self.at..];
-        let is_part = |c: char| c.is_alphanumeric() || c == '_' || c == '-' || c == '.';
-        let length = rest.find(|c| !is_part(c)).unwrap_or(rest.len());
-        let (span, name) = (self.at..self.at + length, &rest[..length]);
-        if length == 0 {
-            let (span, found) = self.found();
-            return Err(self.error(span, format!("{wanted} is wanted, not {found}"), GRAMMAR));
-        }
-        if !is_name(name) {
-            let is_number = name.starts_with(|c: char| c.is_ascii_digit() || c == '.' || c == '-');
-            let help = if is_number {
-                "write names of parameters, and their values in `parameters`"
-            } else {
-                "a name starts with a letter or _, and goes on with letters, digits, _ and -; letters are a to z"
-            };
-            return Err(self.error(span, format!("{wanted} is wanted, not `{name}`"), help));
-        }
-        self.at = span.end;
-        Ok((name.to_owned(), span))
-    }
-
-    fn part(&mut self, depth: usize) -> Result<Unnamed, NetworkTextError> {
-        let (mut name, mut span) = self.name("a part")?;
-        let start = span.start;
-        if depth > DEEPEST {
-            return Err(self.error(span, format!("parts may stand in one another {DEEPEST} times at most"), GRAMMAR));
-        }
-        let mut label = None;
-        if self.take(':') {
-            label = Some((name, span));
-            (name, span) = self.name("a leaf")?;
-        }
-        let combine = match name.as_str() {
-            "series" => Some(UnnamedKind::Series as fn(_) -> _),
-            "parallel" => Some(UnnamedKind::Parallel as fn(_) -> _),
-            _ => None,
-        };
-        if let (Some(_), Some((_, at))) = (combine, &label) {
-            return Err(self.error(at.clone(), "only leaves have names", "name the leaves in it"));
-        }
-        let kind = match combine {
-            Some(combine) => {
-                let open = self.open(&name)?;
-                let mut parts = vec![self.part(depth + 1)?];
-                while self.take(',') {
-                    parts.push(self.part(depth + 1)?);
-                }
-                self.close(open)?;
-                combine(parts)
-            }
-            None => {
-                let leaf = self.leaf(&name, span, label)?;
-                self.leaves.push(leaf);
-                UnnamedKind::Leaf(self.leaves.len() - 1)
-            }
-        };
-        Ok(Unnamed { span: start..self.at, kind })
-    }
-
-    /// Takes the opening parenthesis, and says where it is.
-    fn open(&mut self, before: &str) -> Result<usize, NetworkTextError> {
-        if self.take('(') {
-            return Ok(self.at - 1);
-        }
-        let (span, found) = self.found();
-        Err(self.error(span, format!("`(` is wanted behind `{before}`, not {found}"), GRAMMAR))
-    }
-
-    fn close(&mut self, open: usize) -> Result<(), NetworkTextError> {
-        if self.take(')') {
-            return Ok(());
-        }
-        match self.found() {
-            (_, found) if found == "the end" => {
-                Err(self.error(open..open + 1, "this parenthesis is never closed", "write the missing `)`"))
-            }
-            (span, found) => Err(self.error(span, format!("`,` or `)` is wanted, not {found}"), GRAMMAR)),
-        }
-    }
-
-    fn leaf(
-        &mut self,
-        written: &str,
-        span: Range<usize>,
-        name: Option<(String, Range<usize>)>,
-    ) -> Result<LeafText, NetworkTextError> {
-        if self.leaves.len() >= MOST_LEAVES {
-            return Err(self.error(span, format!("a network has {MOST_LEAVES} leaves at most"), "write fewer"));
-        }
-        let Some(kind) = self.kinds.iter().find(|kind| kind.name == written).map(Arc::clone) else {
-            let known = self.kinds.iter().map(|kind| kind.name).chain(["series", "parallel"]).collect();
-            let error = self.error(span, format!("there is no leaf `{written}`"), "");
-            return Err(NetworkTextError { unknown: Some((written.to_owned(), known)), ..error });
-        };
-        let open = self.open(written)?;
-        let mut arguments = vec![];
-        if self.peek() != Some(')') {
-            arguments.push(self.name("the name of a parameter")?);
-            while self.take(',') {
-                arguments.push(self.name("the name of a parameter")?);
-            }
-        }
-        self.close(open)?;
-        if arguments.len() != kind.params.len() {
-            let wanted = kind.params.iter().map(|param| &*param.name).collect::<Vec<_>>().join(", ");
-            let message = format!("`{written}` takes {} names, not {}", kind.params.len(), arguments.len());
-            return Err(self.error(
-                span.start..self.at,
-                message,
-                format!("write {written}({wanted}): {}", kind.equation),
-            ));
-        }
-        if let LeafBuild::Table(_) = kind.build {
-            let file = arguments.into_iter().map(|(name, span)| self.file(name, span)).collect::<Result<_, _>>()?;
-            return Ok(LeafText { name, kind, params: file });
-        }
-        let params = kind.params.iter().zip(&arguments).map(|(param, argument)| {
-            let unit = in_arguments(&param.unit, &kind.params, &arguments);
-            let own = Param { name: argument.0.clone().into(), unit: unit.into(), ..param.clone() };
-            self.param(own, argument.1.clone())
-        });
-        let params = params.collect::<Result<_, _>>()?;
-        Ok(LeafText { name, kind, params })
-    }
-
-    /// Where a file stands among those of the law.
-    fn file(&mut self, name: String, span: Range<usize>) -> Result<usize, NetworkTextError> {
-        if self.params.iter().any(|param| param.name == name) {
-            return Err(self.error(
-                span,
-                format!("`{name}` is a file here, but a number before"),
-                "write another name",
-            ));
-        }
-        Ok(self.files.iter().position(|known| *known == name).unwrap_or_else(|| {
-            self.files.push(name);
-            self.files.len() - 1
-        }))
-    }
-
-    /// Where a parameter stands among those of the law; one that is named twice must be the same both times.
-    fn param(&mut self, param: Param, span: Range<usize>) -> Result<usize, NetworkTextError> {
-        if self.files.iter().any(|file| *file == param.name) {
-            let message = format!("`{}` is a number here, but a file before", param.name);
-            return Err(self.error(span, message, "write another name"));
-        }
-        let Some(at) = self.params.iter().position(|known| known.name == param.name) else {
-            self.params.push(param);
-            return Ok(self.params.len() - 1);
-        };
-        let (known, unit) =
-            (&mut self.params[at], |unit: &str| if unit.is_empty() { "a number" } else { unit }.to_owned());
-        if known.unit != param.unit {
-            let message =
-                format!("`{}` is in {} here, but {} before", param.name, unit(&param.unit), unit(&known.unit));
-            return Err(self.error(span, message, "write another name"));
-        }
-        known.range.low = known.range.low.max(param.range.low);
-        known.range.high = known.range.high.min(param.range.high);
-        Ok(at)
-    }
-
-    /// The network, every leaf under its name.
-    fn named(&self, root: Unnamed) -> Result<Part, NetworkTextError> {
-        let mut names: Vec<Arc<str>> = Vec::with_capacity(self.leaves.len());
-        for (k, leaf) in self.leaves.iter().enumerate() {
-            let before =
-                self.leaves[..k].iter().filter(|other| other.kind.name == leaf.kind.name && other.name.is_none());
-            let name = match &leaf.name {
-                Some((name, _)) => name.clone(),
-                None => format!("{}{}", leaf.kind.name, before.count() + 1),
-            };
-            names.push(name.into());
-        }
-        for (k, leaf) in self.leaves.iter().enumerate() {
-            let Some((name, span)) = &leaf.name else { continue };
-            if names.iter().enumerate().any(|(other, taken)| other != k && **taken == **name) {
-                return Err(self.error(span.clone(), format!("there are two leaves `{name}`"), "write another name"));
-            }
-            if COLUMNS.contains(&name.as_str()) {
-                let help = format!("a leaf may not be called {}", COLUMNS.join(", "));
-                return Err(self.error(span.clone(), format!("`{name}` is a column of every element"), help));
-            }
-        }
-        Ok(self.finish(&names, root))
-    }
-
-    fn finish(&self, names: &[Arc<str>], part: Unnamed) -> Part {
-        let all = |parts: Vec<Unnamed>| parts.into_iter().map(|part| self.finish(names, part)).collect();
-        let kind = match part.kind {
-            UnnamedKind::Parallel(parts) => PartKind::Parallel(all(parts)),
-            UnnamedKind::Series(parts) => PartKind::Series(all(parts)),
-            UnnamedKind::Leaf(k) => {
-                let LeafText { kind, params, .. } = &self.leaves[k];
-                let name = names[k].clone();
-                match kind.build {
-                    LeafBuild::Values(_) => PartKind::Leaf { name, kind: kind.clone(), params: params.clone() },
-                    LeafBuild::Table(build) => PartKind::Table { name, build, file: params[0] },
-                }
-            }
-        };
-        Part { span: part.span, kind }
-    }
-}
-
-/// A unit whose exponents are names of a leaf's own parameters, with the arguments in their place.
-fn in_arguments(unit: &str, params: &[Param], arguments: &[(String, Range<usize>)]) -> String {
-    params.iter().zip(arguments).fold(unit.to_owned(), |unit, (param, (argument, _))| {
-        unit.replace(&format!("^{}", param.name), &format!("^{argument}"))
-    })
-}
 /// Whether parts stand beside each other of which one is free at some strokes, or slides.
 fn lets_go_aside(network: &Network) -> bool {
     matches!(network, Network::Parallel(parts) if parts.iter().any(|part| part.holds() == Holds::LetsGo || lets_go_aside(part)))

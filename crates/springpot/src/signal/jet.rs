@@ -32,7 +32,7 @@ pub(super) trait Value: Copy {
 }
 
 /// x^n, exact where it can be; 0^0 = 1.
-fn power(base: f64, exponent: f64) -> f64 {
+pub(super) fn power(base: f64, exponent: f64) -> f64 {
     match exponent {
         1.0 => base,
         2.0 => base * base,
@@ -180,7 +180,7 @@ impl Value for Jet {
     }
 }
 
-fn reciprocal(u: f64) -> (f64, f64) {
+pub(super) fn reciprocal(u: f64) -> (f64, f64) {
     (1.0 / u, -1.0 / (u * u))
 }
 

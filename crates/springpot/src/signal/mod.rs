@@ -8,6 +8,7 @@
 pub mod agenda;
 pub mod expression;
 mod function;
+mod gradient;
 mod interval;
 mod jet;
 mod passages;
@@ -18,7 +19,9 @@ mod series;
 pub mod watched;
 
 pub use agenda::{Agenda, Stop};
-pub use expression::{Branch, ColumnExpression, Expression, ExpressionError, MovedJump, Slope, SlopeError};
+pub use expression::{
+    Branch, ColumnExpression, Expression, ExpressionError, MovedJump, Slope, SlopeError, StrokeExpression,
+};
 pub use function::Signal;
 pub use jet::Jet;
 pub(crate) use passages::{Passages, passages};

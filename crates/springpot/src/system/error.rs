@@ -238,6 +238,22 @@ pub enum RunError {
         /// Within this time, s.
         span: f64,
     },
+    /// The force of an element jumps to and fro without getting on.
+    #[error(
+        "t = {} s: the force of element \"{element}\" jumps again and again without getting on: {count} times within {span:.1e} s; \
+         write a force that is continuous, such as friction(f, v0) or tanh(v/v0) in place of sign(v), or jenkins(k, F_y), which sticks",
+        seconds(*.t)
+    )]
+    ForceChatter {
+        /// Time, s.
+        t: f64,
+        /// Whose.
+        element: String,
+        /// How many times.
+        count: u32,
+        /// Within this time, s.
+        span: f64,
+    },
     /// Which joints hold by friction and which slide has no answer.
     #[error(
         "t = {} s: no friction between -force and force of joint \"{joint}\" goes with the forces on it; \
@@ -466,6 +482,7 @@ impl RunError {
             | Self::EventChatter { t, .. }
             | Self::ReferenceJump { t, .. }
             | Self::ControlChatter { t, .. }
+            | Self::ForceChatter { t, .. }
             | Self::NoHold { t, .. }
             | Self::IndefiniteMassMatrix { t, .. }
             | Self::TooManySteps { t, .. }

@@ -3,6 +3,7 @@
 mod bouc_wen;
 mod convergence;
 mod dampers;
+mod expressions;
 mod harmonics;
 mod jenkins;
 mod named;

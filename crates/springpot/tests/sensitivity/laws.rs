@@ -5,10 +5,11 @@ use springpot::collocation::Nodes;
 use springpot::dual::Dual;
 use springpot::fractional::Form;
 use springpot::law::leaf::{
-    BoucWen, Coefficient, EndStop, Friction, Hysteresis, Jenkins, Polynomial, Preload, Source, Spencer, Stack, Stop,
-    Viscous, VoltageDrop,
+    BoucWen, Coefficient, EndStop, ExpressionLeaf, Friction, Hysteresis, Jenkins, Polynomial, Preload, Source, Spencer,
+    Stack, Stop, Viscous, VoltageDrop,
 };
 use springpot::law::{Catalog, Course, Derivative, Entry, Expansion, Heat, Network, PrandtlIshlinskii, Shift, Thermal};
+use springpot::signal::StrokeExpression;
 use std::sync::Arc;
 
 const KNOWN: f64 = 1e-9;
@@ -18,12 +19,23 @@ fn following(constant: Dual, slope: Dual) -> Coefficient {
     Coefficient { slope, input: Some(0), ..Coefficient::constant(constant) }
 }
 
+/// A law of a text.
+fn said(text: &str, n: &[Dual]) -> Network {
+    let expression = Arc::new(StrokeExpression::parse(text).unwrap());
+    Network::leaf(ExpressionLeaf::new(expression, n.to_vec()))
+}
+
 /// Leaves that keep nothing.
 fn simple() -> Vec<(&'static str, Replay)> {
     vec![
         (
             "spring and dashpot",
             Replay::new(|n| Network::parallel([Network::spring(n[0]), Network::dashpot(n[1])]), &[20.0, 3.0]),
+        ),
+        ("expression", Replay::new(|n| said("a*sinh(x/b) + max(x - d, 0)*a", n), &[2.0, 0.03, 0.01])),
+        (
+            "expression of rates",
+            Replay::new(|n| said("k*x + c*v*abs(v)^p + f*tanh(v/s)", n), &[20.0, 3.0, 0.7, 1.5, 0.3]),
         ),
         ("preload", Replay::new(|n| Network::leaf(Preload { force: n[0] }), &[2.0])),
         ("polynomial", Replay::new(|n| Network::leaf(Polynomial::new([n[0], n[1], n[2]])), &[20.0, -30.0, 900.0])),

@@ -337,13 +337,15 @@ fn vary_at(
     );
     for (p, seen) in seen.iter_mut().enumerate() {
         push(seen, what, &[sums[0][p]]);
-        push(seen, if what == "now" { "stored now" } else { "stored" }, &[sums[1][p]]);
+        // What is unknown has a derivative that is none.
+        let stored = if sums[1][p].is_nan() { 0.0 } else { sums[1][p] };
+        push(seen, if what == "now" { "stored now" } else { "stored" }, &[stored]);
     }
 }
 
 fn observe(seen: &mut Seen, what: &'static str, observation: &Observation) {
     push(seen, what, &[observation.force()]);
-    push(seen, if what == "now" { "stored now" } else { "stored" }, &[observation.stored.unwrap()]);
+    push(seen, if what == "now" { "stored now" } else { "stored" }, &[observation.stored.unwrap_or(0.0)]);
 }
 
 fn push(seen: &mut Seen, what: &'static str, values: &[f64]) {

@@ -2,11 +2,12 @@
 
 use super::contract::Leaf;
 use super::table::Table;
-use super::{bouc_wen, dashpot, friction, jenkins, polynomial, preload, spring, springpot, stop, table};
+use super::{bouc_wen, dashpot, expression, friction, jenkins, polynomial, preload, spring, springpot, stop, table};
 use crate::dual::Dual;
 use crate::fractional::Kind as Derivative;
 use crate::law::catalog::Param;
 use crate::law::rule::RuleError;
+use crate::signal::StrokeExpression;
 use std::sync::Arc;
 
 /// A kind of leaf: what networks that are written as text know about it.
@@ -32,6 +33,8 @@ pub enum LeafBuild {
     Values(fn(&[Dual], Derivative) -> Result<SharedLeaf, RuleError>),
     /// The table in the file that its argument stands for.
     Table(fn(&Arc<Table>) -> SharedLeaf),
+    /// The expression that its first argument stands for or is, and the values of its parameters.
+    Expression(fn(&Arc<StrokeExpression>, Vec<Dual>) -> SharedLeaf),
 }
 
 impl LeafKind {
@@ -50,6 +53,7 @@ impl LeafKind {
             preload::kind(),
             bouc_wen::kind(),
             jenkins::kind(),
+            expression::kind(),
         ]
     }
 }

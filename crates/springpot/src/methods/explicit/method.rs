@@ -145,16 +145,21 @@ impl Explicit {
     }
 
     /// Goes on to the end of the step.
-    fn go_on(&mut self, equations: &mut Equations, step: &Target) {
+    ///
+    /// # Errors
+    /// [`RunError::ForceChatter`].
+    fn go_on(&mut self, cx: Context, recorder: &mut Recorder, step: &Target) -> Result<(), RunError> {
+        let Recorder { equations, settings, .. } = recorder;
         let (own, radau) = (&mut self.step, &mut self.radau);
         radau.step.arrive(step.to, [&own.end.q, &own.end.v, &own.end.a]);
         equations.arrive(&own.forces, &mut own.kinematics);
         own.accept(equations.free());
         self.kept.steps += 1;
-        if equations.take_kink() {
+        if equations.take_kink(cx.system, step.to, settings.end)? {
             (self.kept.last, self.kept.is_behind_kink) = (None, true);
             self.begin_anew();
         }
+        Ok(())
     }
 }
 
@@ -308,7 +313,7 @@ impl Stepper for Explicit {
     fn accept(&mut self, cx: Context, recorder: &mut Recorder, step: &Target) -> Result<(), RunError> {
         match self.kept.is_stiff {
             true => self.radau.accept(cx, recorder, step)?,
-            false => self.go_on(&mut recorder.equations, step),
+            false => self.go_on(cx, recorder, step)?,
         }
         let settings = &recorder.settings;
         let longest = self.longest_step(cx, settings);

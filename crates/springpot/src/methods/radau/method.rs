@@ -266,7 +266,7 @@ impl Stepper for Radau {
         let equations = &mut recorder.equations;
         self.step.accept(step.size, step.to);
         equations.accept(&mut self.step.stages[STAGES - 1].kinematics);
-        if equations.take_kink() {
+        if equations.take_kink(cx.system, step.to, recorder.settings.end)? {
             // What follows is another function: neither the cubic nor the errors before tell anything of it.
             (self.last, self.step.fitted.last) = (None, None);
         }

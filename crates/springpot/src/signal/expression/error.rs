@@ -48,6 +48,12 @@ pub enum ExpressionError {
         /// Where.
         at: Range<usize>,
     },
+    /// t, where a force follows from stroke and rate alone.
+    #[error("`t` has no place here: a force follows from the stroke x, its rate v and parameters")]
+    Time {
+        /// Where.
+        at: Range<usize>,
+    },
     /// A function without parentheses.
     #[error("`{function}` takes its argument in parentheses, as in `{function}(t)`")]
     NeedsParentheses {
@@ -107,6 +113,7 @@ impl ExpressionError {
             Self::Unexpected { at, .. }
             | Self::UnexpectedEnd { at, .. }
             | Self::Unclosed { at }
+            | Self::Time { at }
             | Self::Condition { at, .. }
             | Self::UnknownName { at, .. }
             | Self::NeedsParentheses { at, .. }

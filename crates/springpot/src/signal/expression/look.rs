@@ -3,9 +3,8 @@
 
 use super::branch::Branch;
 use super::formula::Expression;
-use super::program::{MAX_STACK, Op, Trace, stack_after, triangle};
-use crate::signal::jet::Jet;
-use crate::signal::jet::{Smooth, Value};
+use super::program::{MAX_STACK, Op, Trace, argument, stack_after, triangle};
+use crate::signal::jet::{Jet, Smooth};
 use crate::signal::series::Series;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -120,15 +119,10 @@ impl Expression {
             &|_| Jet::default(),
             &mut Trace::default(),
         );
-        let argument = match op {
-            Op::Min | Op::Max => stack[top - 2].sub(stack[top - 1]),
-            Op::Atan2 => stack[top - 2],
-            Op::AsinSin => Smooth::Cos.apply(stack[top - 1]),
-            Op::AcosCos => Smooth::Sin.apply(stack[top - 1]),
-            Op::Smooth(_) => return (stack[top - 1].first, stack[top - 1].second),
-            _ => stack[top - 1],
-        };
-        (argument.value, argument.first)
+        match argument(op, &stack[..top]) {
+            Some(argument) => (argument.value, argument.first),
+            None => (stack[top - 1].first, stack[top - 1].second),
+        }
     }
 }
 

@@ -3,8 +3,8 @@
 use super::error::ExpressionError;
 use super::formula::Expression;
 use super::parse::{program_of, program_of_columns_and_open};
-use super::program::{MAX_KINKS, MAX_STACK, Op, Trace, carry_out, operands_from, run_on};
-use crate::signal::jet::{Jet, Smooth};
+use super::program::{MAX_KINKS, MAX_STACK, Op, Trace, argument, carry_out, operands_from, run_on};
+use crate::signal::jet::{Jet, Value};
 use crate::signal::rounding::Rounded;
 use std::fmt;
 
@@ -112,33 +112,11 @@ impl ColumnExpression {
         let mut kinks = 0..;
         for &op in &self.program {
             if op.has_kink() && kinks.next() == Some(bit) {
-                let mut own = [time; 2];
-                let made = match op {
-                    Op::Min | Op::Max => {
-                        own.copy_from_slice(&stack[top - 2..top]);
-                        (2, Some(Op::Subtract))
-                    }
-                    Op::Atan2 if stack[top - 1].value < 0.0 => {
-                        own[0] = stack[top - 2];
-                        (1, None)
-                    }
-                    Op::Abs | Op::Sign | Op::Step | Op::AsinSin | Op::AcosCos => {
-                        own[0] = stack[top - 1];
-                        let through = match op {
-                            Op::AsinSin => Some(Op::Smooth(Smooth::Cos)),
-                            Op::AcosCos => Some(Op::Smooth(Smooth::Sin)),
-                            _ => None,
-                        };
-                        (1, through)
-                    }
-                    _ => return None,
-                };
-                let (mut height, through) = made;
-                let turned = (branch >> bit & 1 == 1).then_some(Op::Negate);
-                for op in through.into_iter().chain(turned) {
-                    carry_out(op, &mut own, &mut height, time, &columns, &mut Trace::default());
+                if op == Op::Atan2 && !is_beside_cut(stack[top - 1].value) {
+                    return None;
                 }
-                return Some(own[0]);
+                let argument = argument(op, &stack[..top])?;
+                return Some(if branch >> bit & 1 == 1 { argument.neg() } else { argument });
             }
             carry_out(op, &mut stack, &mut top, time, &columns, &mut trace);
         }
@@ -148,7 +126,7 @@ impl ColumnExpression {
     /// Whether its value may jump at kink `bit`.
     pub(crate) fn jumps_at(&self, bit: u32) -> bool {
         let mut kinks = self.program.iter().filter(|op| op.has_kink());
-        kinks.nth(bit as usize).is_some_and(|op| matches!(op, Op::Sign | Op::Step | Op::Atan2))
+        kinks.nth(bit as usize).is_some_and(|op| op.may_jump())
     }
 
     /// The first function that bends or jumps by columns, but by none of the first `count`.
@@ -201,15 +179,9 @@ impl ColumnExpression {
         let mut kinks = 0..;
         for &op in &self.program {
             if let Some(own) = op.has_kink().then(|| kinks.next()).flatten() {
-                let argument = match op {
-                    Op::Min | Op::Max => Some(stack[top - 2] - stack[top - 1]),
-                    Op::Atan2 if stack[top - 1] < 0.0 => Some(stack[top - 2]),
-                    Op::Abs | Op::Sign | Op::Step => Some(stack[top - 1]),
-                    Op::AsinSin => Some(stack[top - 1].cos()),
-                    Op::AcosCos => Some(stack[top - 1].sin()),
-                    // Functions that end there, and the angle of a point that is not beside the cut.
-                    _ => None,
-                };
+                // The angle of a point that is not beside the cut has none.
+                let is_off = op == Op::Atan2 && !is_beside_cut(stack[top - 1]);
+                let argument = argument(op, &stack[..top]).filter(|_| !is_off);
                 if let Some(argument) = argument {
                     take(own, if branch >> own & 1 == 1 { -argument } else { argument });
                 }
@@ -265,6 +237,11 @@ impl ColumnExpression {
             _ => None,
         }
     }
+}
+
+/// Whether a point of this x is beside the cut of atan2.
+fn is_beside_cut(x: f64) -> bool {
+    x < 0.0
 }
 
 /// The text it was read from.

@@ -1,6 +1,7 @@
 //! Precedence climbing (V. R. Pratt, "Top down operator precedence", POPL 1973) from text to a postfix program.
 
 use super::error::ExpressionError;
+use super::of_stroke::VARIABLES;
 use super::program::{MAX_DEPTH, MAX_LENGTH, MAX_STACK, NAMES, Name, Op, Trace, lookup, run};
 use crate::signal::jet::Smooth;
 use std::f64::consts::FRAC_PI_2;
@@ -18,13 +19,19 @@ pub(super) fn program_of(
     constants: &[(String, f64)],
     columns: &[&str],
 ) -> Result<(Vec<Op>, Vec<usize>), ExpressionError> {
+    check(text, columns)?;
+    Parser { constants, columns, ..Parser::of(text) }.whole()
+}
+
+/// Refuses what is too long, or compares.
+fn check(text: &str, columns: &[&str]) -> Result<(), ExpressionError> {
     if text.len() > MAX_LENGTH {
         return Err(ExpressionError::TooLong { length: text.len(), limit: MAX_LENGTH });
     }
-    if let Some(at) = condition(text, columns) {
-        return Err(ExpressionError::Condition { found: text[at.clone()].to_owned(), at });
+    match condition(text, columns) {
+        Some(at) => Err(ExpressionError::Condition { found: text[at.clone()].to_owned(), at }),
+        None => Ok(()),
     }
-    Parser { constants, columns, ..Parser::of(text) }.whole()
 }
 
 /// The same where constants called `open` stay open: they are columns behind those that it names, each of them whether it occurs or not.
@@ -47,6 +54,14 @@ pub(super) fn program_of_columns_and_open(
     }
     named.extend((0..open.len()).map(|k| columns.len() + k));
     Ok((program, named))
+}
+
+/// The program of an expression of a stroke and its rate, and the names of its parameters, which are columns behind those two.
+pub(super) fn program_of_stroke(text: &str) -> Result<(Vec<Op>, Vec<String>), ExpressionError> {
+    check(text, &[])?;
+    let mut parser = Parser { open: &VARIABLES, free: Some(Vec::new()), ..Parser::of(text) };
+    let program = parser.read()?;
+    Ok((program, parser.free.unwrap_or_default()))
 }
 
 /// The program of an expression in which constants of these names stay open: they are its columns, by their places here.
@@ -102,6 +117,8 @@ struct Parser<'a> {
     columns: &'a [&'a str],
     /// Constants that are columns of the program.
     open: &'a [&'a str],
+    /// Where names that nobody knows are columns behind those: these names.
+    free: Option<Vec<String>>,
     at: usize,
     depth: usize,
     /// Intermediate results on the stack after the program so far.
@@ -114,14 +131,18 @@ struct Parser<'a> {
 impl<'a> Parser<'a> {
     fn of(text: &'a str) -> Self {
         let (program, named) = (Vec::new(), Vec::new());
-        Self { text, constants: &[], columns: &[], open: &[], at: 0, depth: 0, height: 0, program, named }
+        Self { text, constants: &[], columns: &[], open: &[], free: None, at: 0, depth: 0, height: 0, program, named }
     }
 
     /// The program of the whole text, and the columns that it names.
     fn whole(mut self) -> Result<(Vec<Op>, Vec<usize>), ExpressionError> {
+        Ok((self.read()?, self.named))
+    }
+
+    fn read(&mut self) -> Result<Vec<Op>, ExpressionError> {
         self.expression(0)?;
         match self.peek() {
-            None => Ok((self.program, self.named)),
+            None => Ok(std::mem::take(&mut self.program)),
             Some(_) => Err(self.unexpected("an operator")),
         }
     }
@@ -209,6 +230,7 @@ impl<'a> Parser<'a> {
         let at = self.at..self.at + name.len();
         self.at = at.end;
         match lookup(name) {
+            Some(Name::Operand(Op::Time)) if self.free.is_some() => Err(ExpressionError::Time { at }),
             Some(Name::Operand(op)) => self.emit(op),
             Some(Name::Function(op)) if self.peek() == Some('(') => self.call(name, op, at.start),
             Some(Name::Function(_)) => Err(ExpressionError::NeedsParentheses { function: name.to_owned(), at }),
@@ -216,6 +238,15 @@ impl<'a> Parser<'a> {
                 // Behind all that may be named.
                 let place = self.open.iter().position(|open| *open == name).unwrap_or(0);
                 self.emit(Op::Column(self.columns.len() + place))
+            }
+            None if self.free.is_some() && !matches!(self.peek(), Some('(' | '.')) => {
+                let free = self.free.get_or_insert_default();
+                let place = free.iter().position(|free| free == name).unwrap_or_else(|| {
+                    free.push(name.to_owned());
+                    free.len() - 1
+                });
+                let place = self.columns.len() + self.open.len() + place;
+                self.emit(Op::Column(place))
             }
             None => match self.constants.iter().find(|(constant, _)| constant == name) {
                 Some(&(_, value)) => self.emit(Op::Number(value)),

@@ -52,6 +52,11 @@ impl Op {
         }
     }
 
+    /// Whether its value may jump where it has a kink.
+    pub(super) fn may_jump(self) -> bool {
+        matches!(self, Self::Sign | Self::Step | Self::Atan2)
+    }
+
     pub(super) fn has_kink(self) -> bool {
         match self {
             Self::Abs | Self::Sign | Self::Step | Self::Min | Self::Max | Self::Atan2 => true,
@@ -70,6 +75,18 @@ pub(super) fn operands_from(program: &[Op], at: usize, mut wanted: usize) -> usi
         wanted = wanted - 1 + program[first].operands();
     }
     first
+}
+
+/// The function of the operands of a kink that passes zero there; of functions that end there `None`.
+pub(super) fn argument<V: Value>(op: Op, operands: &[V]) -> Option<V> {
+    match (op, operands) {
+        (Op::Min | Op::Max, [.., first, second]) => Some(first.sub(*second)),
+        (Op::Atan2, [.., first, _]) => Some(*first),
+        (Op::Abs | Op::Sign | Op::Step, [.., own]) => Some(*own),
+        (Op::AsinSin, [.., own]) => Some(Smooth::Cos.apply(*own)),
+        (Op::AcosCos, [.., own]) => Some(Smooth::Sin.apply(*own)),
+        _ => None,
+    }
 }
 
 /// What a name stands for.
