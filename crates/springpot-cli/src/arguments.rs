@@ -241,9 +241,9 @@ Examples:
   springpot metrics results/arm --metric 'peak = max(v.q1), window = [1, 2]'
   springpot metrics arm --metric 'settling-time(gripper.error), band = \"1 mm\"'
 
-Prints what the run wrote into metrics.csv, or other metrics: [NAME =] KIND(COLUMN), and behind commas window, band and target as \
+Prints what the run wrote into metrics.csv, or other metrics: [NAME =] KIND(COLUMN), and behind commas window, band, target and levels as \
 [[metric]] of a scenario has them. Kinds: min, max, final, peak-to-peak, mean, rms, settling-time, overshoot, frequency, \
-log-decrement, residual-vibration. Reads results.csv, .parquet and .npz; where metrics.csv of the run is missing it is written again.
+log-decrement, residual-vibration, rise-time, iae, ise, itae, effort. Reads results.csv, .parquet and .npz; where metrics.csv of the run is missing it is written again.
 
 Exit codes: 0 done, 1 a file cannot be written, 2 the results, a metric or a column is not there.")]
     Metrics(MetricsOptions),

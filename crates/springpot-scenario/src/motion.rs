@@ -6,6 +6,7 @@ mod gripper_path;
 mod idle;
 mod joints;
 mod prescribed;
+mod shaping;
 
 use crate::keys::FORWARD_RUNS;
 use crate::keys::{MOTION, MotionKind};

@@ -90,7 +90,7 @@ impl Designed {
         let design = problem.plan();
         let own = &problem.case().metrics[design.metric].metric;
         let column = problem.case().row_columns().into_iter().find(|column| column.name == own.of);
-        let unit = own.kind.unit(column.as_ref().map_or("", |column| &column.unit)).to_owned();
+        let unit = own.kind.unit(column.as_ref().map_or("", |column| &column.unit)).into_owned();
         let sign = if design.maximise { -1.0 } else { 1.0 };
         let holds = |tried: &Tried| {
             design.constraints.iter().zip(&tried.constraints).all(|(one, value)| {

@@ -38,23 +38,26 @@ pub(super) fn rms(series: &Series) -> f64 {
 }
 
 pub(super) fn mean_slopes(series: &Series) -> Slopes {
-    Slopes::of_rows(weights(series).enumerate())
+    Slopes::of_rows(shares(series).enumerate())
 }
 
 /// Σ w y δy/rms: where all rows are 0 it bends.
 pub(super) fn rms_slopes(series: &Series) -> Slopes {
     let rms = rms(series);
-    Slopes::of_rows(weights(series).zip(series.y()).map(|(weight, y)| weight * y / rms).enumerate())
+    Slopes::of_rows(shares(series).zip(series.y()).map(|(weight, y)| weight * y / rms).enumerate())
 }
 
 /// The weights of the trapezoid rule over (t_N − t_1).
-fn weights(series: &Series) -> impl Iterator<Item = f64> {
+fn shares(series: &Series) -> impl Iterator<Item = f64> {
     let t = series.t();
     let last = t.len().saturating_sub(1);
-    (0..t.len()).map(move |k| match last {
-        0 => 1.0,
-        _ => 0.5 * (t[(k + 1).min(last)] - t[k.saturating_sub(1)]) / (t[last] - t[0]),
-    })
+    weights(t).map(move |weight| if last == 0 { 1.0 } else { weight / (t[last] - t[0]) })
+}
+
+/// The weights of the trapezoid rule, s; 0 of a single row.
+pub(super) fn weights(t: &[f64]) -> impl Iterator<Item = f64> {
+    let last = t.len().saturating_sub(1);
+    (0..t.len()).map(move |k| 0.5 * (t[(k + 1).min(last)] - t[k.saturating_sub(1)]))
 }
 
 fn over_time(series: &Series, of: impl Fn(f64) -> f64) -> f64 {

@@ -3,6 +3,7 @@
 //! Rows whose field is empty are left out, as if there were none; only the last value is that of the last row, whatever it is. A metric
 //! that has no value is NaN, which is an empty field.
 
+mod errors;
 mod later;
 mod levels;
 mod series;
@@ -15,6 +16,7 @@ pub use series::Series;
 pub(crate) use series::is_within;
 
 use crate::table::{push_number, push_text};
+use errors::Integrand;
 use springpot::table::Column;
 use springpot_scenario::{Metric, MetricKind};
 
@@ -33,6 +35,11 @@ pub fn value(metric: &Metric, t: &[f64], values: &[f64]) -> f64 {
         MetricKind::Frequency => swings::frequency(&series, metric),
         MetricKind::LogDecrement => swings::log_decrement(&series, metric),
         MetricKind::ResidualVibration => swings::residual(&series, metric),
+        MetricKind::RiseTime => errors::rise_time(&series, metric),
+        MetricKind::Iae => errors::integral(&series, metric, Integrand::Absolute),
+        MetricKind::Ise => errors::integral(&series, metric, Integrand::Square),
+        MetricKind::Itae => errors::integral(&series, metric, Integrand::Timed),
+        MetricKind::Effort => errors::integral(&series, metric, Integrand::Effort),
     }
 }
 
@@ -111,6 +118,11 @@ fn slopes_of(metric: &Metric, t: &[f64], values: &[f64]) -> Option<(slopes::Slop
         MetricKind::Frequency => swings::frequency_slopes(&series, metric),
         MetricKind::LogDecrement => swings::log_decrement_slopes(&series, metric),
         MetricKind::ResidualVibration => swings::residual_slopes(&series, metric),
+        MetricKind::RiseTime => errors::rise_slopes(&series, metric),
+        MetricKind::Iae => errors::integral_slopes(&series, metric, Integrand::Absolute),
+        MetricKind::Ise => errors::integral_slopes(&series, metric, Integrand::Square),
+        MetricKind::Itae => errors::integral_slopes(&series, metric, Integrand::Timed),
+        MetricKind::Effort => errors::integral_slopes(&series, metric, Integrand::Effort),
     };
     value(metric, t, values).is_finite().then(|| (slopes, series::rows_of(t, values, metric.window)))
 }
@@ -131,7 +143,7 @@ pub(crate) fn push_line(text: &mut String, lead: &str, metric: &Metric, column: 
     text.push(',');
     push_number(text, value);
     text.push(',');
-    push_text(text, metric.kind.unit(&column.unit));
+    push_text(text, &metric.kind.unit(&column.unit));
     text.push('\n');
 }
 
@@ -140,22 +152,10 @@ mod tests {
     use super::*;
     use springpot_scenario::Band;
 
-    const KINDS: [MetricKind; 11] = [
-        MetricKind::Min,
-        MetricKind::Max,
-        MetricKind::Final,
-        MetricKind::PeakToPeak,
-        MetricKind::Mean,
-        MetricKind::Rms,
-        MetricKind::SettlingTime,
-        MetricKind::Overshoot,
-        MetricKind::Frequency,
-        MetricKind::LogDecrement,
-        MetricKind::ResidualVibration,
-    ];
+    const KINDS: [MetricKind; MetricKind::ALL.len()] = MetricKind::ALL;
 
     fn metric(kind: MetricKind, band: Option<Band>, target: Option<f64>) -> Metric {
-        Metric { name: "m".to_owned(), of: "y".to_owned(), kind, window: Some([0.05, 3.9]), band, target }
+        Metric { name: "m".to_owned(), of: "y".to_owned(), kind, window: Some([0.05, 3.9]), band, target, levels: None }
     }
 
     /// Times that are not even, and a swing that dies away; every seventh row is empty.

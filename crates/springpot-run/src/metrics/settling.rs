@@ -49,7 +49,7 @@ mod tests {
 
     fn metric(band: Option<Band>, target: Option<f64>) -> Metric {
         let (name, of) = ("settle".to_owned(), "y".to_owned());
-        Metric { name, of, kind: MetricKind::SettlingTime, window: None, band, target }
+        Metric { name, of, kind: MetricKind::SettlingTime, window: None, band, target, levels: None }
     }
 
     #[test]

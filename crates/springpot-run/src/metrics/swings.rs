@@ -206,7 +206,7 @@ mod tests {
 
     fn metric(band: Option<Band>, target: Option<f64>) -> Metric {
         let (name, of) = ("swing".to_owned(), "y".to_owned());
-        Metric { name, of, kind: MetricKind::Frequency, window: None, band, target }
+        Metric { name, of, kind: MetricKind::Frequency, window: None, band, target, levels: None }
     }
 
     /// Rows of a function on [0, end], `per_second` a second.

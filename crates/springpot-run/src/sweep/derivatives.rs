@@ -140,13 +140,13 @@ impl CaseDerivatives {
                 text.push(',');
                 push_number(text, *value);
                 text.push(',');
-                push_text(text, unit);
+                push_text(text, &unit);
                 text.push(',');
                 push_text(text, &parameter.name);
                 text.push(',');
                 push_number(text, *slope);
                 text.push(',');
-                push_text(text, &parameter.over(unit));
+                push_text(text, &parameter.over(&unit));
                 push_fields(text, [parameter.value * slope / value].into_iter());
                 text.push('\n');
             }

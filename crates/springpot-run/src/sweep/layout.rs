@@ -111,7 +111,7 @@ impl Layout {
 
     /// Names of the metrics, and the units of their values.
     pub fn metric_units(&self) -> Vec<[String; 2]> {
-        let unit = |wanted: &WantedMetric| wanted.first.kind.unit(&wanted.column.unit).to_owned();
+        let unit = |wanted: &WantedMetric| wanted.first.kind.unit(&wanted.column.unit).into_owned();
         self.metrics.iter().map(|wanted| [wanted.first.name.clone(), unit(wanted)]).collect()
     }
 

@@ -5,6 +5,7 @@ use super::{Bound, Each, Keys, Need, Shape, key};
 use springpot::control::{ComputedTorque, Controller, Impedance, PdGravity, Pid};
 use std::sync::Arc;
 
+const PD_GRAVITY: &str = "pd-gravity";
 const COMPUTED_TORQUE: &str = "computed-torque";
 const PID: &str = "pid";
 const FRACTIONAL_PID: &str = "fractional-pid";
@@ -55,7 +56,7 @@ const HANGS: &str = "it carries the weight and follows nothing";
 /// Every kind.
 pub(crate) static KINDS: [ControllerKind; 5] = [
     ControllerKind {
-        name: "pd-gravity",
+        name: PD_GRAVITY,
         words: "Proportional–derivative with gravity",
         gains: OF_FORCES,
         has_orders: false,
@@ -138,6 +139,25 @@ pub(crate) const TRAPEZOID: &str = "trapezoid";
 pub(crate) const CONDITIONAL: &str = "conditional";
 pub(crate) const NONE: &str = "none";
 
+/// What a derivative part takes.
+pub(crate) const ERROR: &str = "error";
+pub(crate) const MEASUREMENT: &str = "measurement";
+
+/// Those whose derivative part may go through a filter.
+const FILTERED: &[&str] = &[PD_GRAVITY, PID, FRACTIONAL_PID];
+
+/// Those that act on errors of joints.
+const WEIGHTED: &[&str] = &[PD_GRAVITY, COMPUTED_TORQUE, PID, FRACTIONAL_PID];
+
+/// Noise of what a sampled controller measures.
+pub(crate) static NOISE: Keys = Keys {
+    words: "Noise of the coordinates that a sampled controller measures: white, of the normal distribution.",
+    keys: &[
+        key("sd", Shape::ByJointOrNumber, Need::Required("sd = \"1 mrad\""), "Standard deviation."),
+        key("seed", Shape::Whole(0, None), Need::Number(1.0), "Of the random numbers."),
+    ],
+};
+
 fn kinds() -> Vec<(&'static str, &'static str)> {
     KINDS.iter().map(|kind| (kind.name, kind.words)).collect()
 }
@@ -162,6 +182,36 @@ pub(crate) static CONTROLLER: Keys = Keys {
             "Whether the generalized forces of the elements are taken off.",
         )
         .only(&[COMPUTED_TORQUE]),
+        key(
+            "filter",
+            Shape::Number("s", Bound::Positive),
+            Need::Said("none"),
+            "Time T of a filter 1/(1 + T s) behind the derivative part.",
+        )
+        .only(FILTERED),
+        key(
+            "derivative_on",
+            Shape::Words(|| vec![ERROR, MEASUREMENT]),
+            Need::Word(ERROR),
+            "What the derivative part takes: q_d − q, or −q.",
+        ),
+        key(
+            "set_point_weight",
+            Shape::ByJointOrNumber,
+            Need::Number(1.0),
+            "b of the proportional part, which takes b·q_d − q.",
+        )
+        .only(WEIGHTED),
+        key(
+            "feed_forward",
+            Shape::ByJoint(Each::Force),
+            Need::Said("none"),
+            "Forces that are added to those of the law, before all limits.",
+        ),
+        key("noise", Shape::Table(&NOISE), Need::Said("none"), "Noise of the coordinates that are measured.")
+            .only(WEIGHTED),
+        key("quantization", Shape::ByJointOrNumber, Need::Said("none"), "Steps of the coordinates that are measured.")
+            .only(WEIGHTED),
         key(
             "reference",
             Shape::TableWithJoints(&REFERENCE),
@@ -249,12 +299,14 @@ pub(crate) static REFERENCE: Keys = Keys {
 
 #[cfg(test)]
 mod tests {
-    use super::{CONTROLLER, ControllerKind, KINDS};
+    use super::{CONTROLLER, ControllerKind, Gains, KINDS};
 
     #[test]
     fn keys_belong_to_the_kinds_that_take_them() {
-        for key in ["ki", "anti_windup", "lambda", "mu", "compensate_elements"] {
+        for key in ["ki", "anti_windup", "lambda", "mu", "compensate_elements", "filter", "noise", "set_point_weight"] {
             let takes = |kind: &&ControllerKind| match key {
+                "filter" => !kind.compensates && matches!(kind.gains, Gains::OfJoints(_)),
+                "noise" | "set_point_weight" => matches!(kind.gains, Gains::OfJoints(_)),
                 "ki" | "anti_windup" => kind.integrates(),
                 "lambda" | "mu" => kind.has_orders,
                 _ => kind.compensates,

@@ -23,7 +23,8 @@ mod tests;
 
 pub(crate) use constants::SCALAR;
 pub(crate) use controller::{
-    CONDITIONAL, CONTROLLER, ControllerKind, GRIPPER_PATH, Gained, Gains, MOVE, NONE, REFERENCE, TRAPEZOID,
+    CONDITIONAL, CONTROLLER, ControllerKind, GRIPPER_PATH, Gained, Gains, MEASUREMENT, MOVE, NOISE, NONE, REFERENCE,
+    TRAPEZOID,
 };
 pub(crate) use data::{CREEP, DATA, DATA_COLUMN, DMA, FIT, HUBER, RELAXATION, RUN, STROKE};
 pub(crate) use design::{CONSTRAINT, DESIGN};

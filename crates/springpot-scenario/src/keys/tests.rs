@@ -297,7 +297,7 @@ fn the_index_leads_to_every_key() {
         ("### Past", &[&HELD]),
         ("### Heat", &[&SHIFT, &THERMAL, &EXPANSION]),
         ("## [motion]", &[&MOTION, &POSE, &START_VELOCITIES]),
-        ("### Controllers", &[&CONTROLLER, &REFERENCE]),
+        ("### Controllers", &[&CONTROLLER, &NOISE, &REFERENCE]),
         ("## [[event]]", &[&EVENT, &ACTION]),
         ("## [[metric]]", &[&METRIC]),
         ("## [time]", &[&TIME, &TIMES]),

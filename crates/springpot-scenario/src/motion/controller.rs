@@ -2,6 +2,7 @@
 
 use super::gripper_path;
 use super::joints::{ByJoint, Parts};
+use super::shaping;
 use crate::keys::{self, CONTROLLER, ControllerKind, Gained, Gains, REFERENCE};
 use crate::reader::{Field, Read, Table, all};
 use crate::robot::{OwnJoint, Robot};
@@ -63,7 +64,16 @@ impl ControllerPlan {
     pub(super) fn words(&self) -> String {
         let word = |value: &Value| value.as_str().unwrap_or_default().to_owned();
         let mut words = format!("{}, follows {}", word(&self.record["kind"]), word(&self.record["reference"]["kind"]));
-        for (key, said) in [("limits", "torques limited"), ("rate_limits", "rates limited")] {
+        let kept = [
+            ("filter", "derivative filtered"),
+            ("set_point_weight", "set point weighted"),
+            ("feed_forward", "fed forward"),
+            ("noise", "noisy"),
+            ("quantization", "quantized"),
+            ("limits", "torques limited"),
+            ("rate_limits", "rates limited"),
+        ];
+        for (key, said) in kept {
             if self.record.get(key).is_some() {
                 words += &format!(", {said}");
             }
@@ -114,7 +124,7 @@ pub(super) struct Joints<'r> {
 
 impl<'r> Joints<'r> {
     /// The joints that a controller drives, each with its place in v.
-    fn driven(&self) -> impl Iterator<Item = (usize, OwnJoint<'r>)> {
+    pub(super) fn driven(&self) -> impl Iterator<Item = (usize, OwnJoint<'r>)> {
         let model = self.robot.model();
         let joints = model.own_joints().zip(self.robot.own_joints());
         let driven = joints.filter(|(_, joint)| joint.units().is_some() && (self.is_driven)(joint));
@@ -122,7 +132,7 @@ impl<'r> Joints<'r> {
     }
 
     /// Opens a table by joints that a controller drives; one value may stand for all coordinates of a joint.
-    fn open(&self, field: &Field<'r>) -> Read<ByJoint<'r>> {
+    pub(super) fn open(&self, field: &Field<'r>) -> Read<ByJoint<'r>> {
         let mut names: Vec<&str> = self.driven().map(|(_, joint)| joint.joint).collect();
         names.dedup();
         let reason = |key: &str| {
@@ -162,7 +172,11 @@ pub(super) fn read(field: &Field<'_>, joints: &Joints<'_>, end: Option<f64>) -> 
         _ => AntiWindup::Conditional,
     };
     let sampling = sampling(&table, &mut record);
+    let shaping = shaping::shaping(&table, joints, &mut record);
+    let feed_forward = shaping::feed_forward(&table, joints, end, &mut record);
     let (law, (reference, path, referred), limits, sampling) = (law?, reference?, limits?, sampling?);
+    let measurement = shaping::measurement(&table, joints, sampling.as_ref(), &mut record);
+    let (shaping, feed_forward, measurement) = (shaping?, feed_forward?, measurement?);
     let (own, written) = (field.node.place.clone(), table.get("reference"));
     let has_orientation = written.as_ref().is_some_and(|field| field.node.get("rpy").is_some());
     let entries = written.as_ref().and_then(|field| field.node.entries()).unwrap_or_default();
@@ -173,7 +187,7 @@ pub(super) fn read(field: &Field<'_>, joints: &Joints<'_>, end: Option<f64>) -> 
         record.insert("anti_windup".to_owned(), json!(word));
     }
     record.insert("reference".to_owned(), referred);
-    let controlled = Controlled { law, reference, limits, anti_windup, sampling };
+    let controlled = Controlled { law, reference, limits, anti_windup, sampling, shaping, feed_forward, measurement };
     let sample = table.get("sample").map(|field| field.node.place.clone());
     let limits = table.get("limits").map(|field| field.node.place.clone());
     Ok(ControllerPlan {
@@ -289,10 +303,7 @@ fn of_joints(
     let (kp, kd) = (gain("kp", 0)?, gain("kd", 1)?);
     let ki = if kind.integrates() { gain("ki", 2)? } else { Vec::new() };
     warn_of_no_gain(table, kind, [&kp[..], &kd, &ki]);
-    let mut list = |key: &str, values: &[f64]| {
-        let listed = joints.driven().map(|(k, joint)| (joint.name.to_owned(), json!(values[k])));
-        record.insert(key.to_owned(), listed.collect::<Map<_, _>>().into());
-    };
+    let mut list = |key: &str, values: &[f64]| shaping::list(record, key, joints, values);
     list("kp", &kp);
     list("kd", &kd);
     if kind.integrates() {
@@ -334,7 +345,7 @@ fn not_negative(field: &Field<'_>, unit: &str, order: &dyn Fn(usize) -> f64, vel
 }
 
 /// A value for each velocity (nv): one for all joints that are driven, or by joint; `left_out` where there is none.
-fn by_joint(
+pub(super) fn by_joint(
     table: &Table<'_>,
     key: &'static str,
     joints: &Joints<'_>,

@@ -154,7 +154,7 @@ fn constraint(item: &Field<'_>, plan: &Plan) -> Read<Vec<Constraint>> {
     let metric = metric(&table.require("metric")?, plan)?;
     let own = &plan.metrics[metric].metric;
     let of = plan.row_columns().into_iter().find(|column| column.name == own.of);
-    let unit = own.kind.unit(of.as_ref().map_or("", |column| &column.unit)).to_owned();
+    let unit = own.kind.unit(of.as_ref().map_or("", |column| &column.unit)).into_owned();
     let limit = |key| table.get(key).map(|field| field.number(&unit).map(|limit| (limit, field))).transpose();
     let (min, max) = (limit("min")?, limit("max")?);
     if let (Some((low, _)), Some((high, field))) = (&min, &max)

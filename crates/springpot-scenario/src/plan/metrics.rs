@@ -24,7 +24,7 @@ use std::sync::Arc;
 const MAX_METRICS: usize = 1_000;
 
 /// What stands behind the commas of one that is a line.
-const BEHIND_COMMAS: [&str; 3] = ["window", "band", "target"];
+const BEHIND_COMMAS: [&str; 4] = ["window", "band", "target", "levels"];
 
 /// How far a column may stay from its target, or how large a swing must be to count.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -51,6 +51,9 @@ pub struct Metric {
     pub band: Option<Band>,
     /// Where the column is to go; `None`: the last row.
     pub target: Option<f64>,
+    /// Of the rise time, between which shares of the way it is; `None`: 0.1 and 0.9.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub levels: Option<[f64; 2]>,
 }
 
 /// A metric of a scenario.
@@ -94,13 +97,17 @@ fn one(table: &Table<'_>, name: Read<String>, columns: &[Column], rows: Option<&
     let window = table.get("window").map(|field| window(&field, rows)).transpose();
     let kind = kind.map(|word| MetricKind::named(word).unwrap_or(MetricKind::Final));
     let (kind, (column, of)) = (kind?, of?);
-    if !kind.takes_band() {
-        let needless = ["band", "target"].into_iter().filter_map(|key| table.get(key));
-        let refused: Vec<_> = needless.map(|field| has_no_meaning(&field, kind)).collect();
-        if let Some(refused) = refused.into_iter().next() {
-            return Err(refused);
-        }
+    let takes = [
+        ("band", kind.takes_band()),
+        ("target", kind.takes_target()),
+        ("levels", matches!(kind, MetricKind::RiseTime)),
+    ];
+    let needless = takes.into_iter().filter(|(_, takes)| !takes).filter_map(|(key, _)| table.get(key));
+    let refused: Vec<_> = needless.map(|field| has_no_meaning(&field, kind)).collect();
+    if let Some(refused) = refused.into_iter().next() {
+        return Err(refused);
     }
+    let levels = table.get("levels").map(|field| levels(&field)).transpose()?;
     let band = table.get("band").map(|field| band(&field, column)).transpose();
     let target = table.get("target").map(|field| Ok((in_unit(&field, column)?, field))).transpose();
     let (name, window, band, target) = (name?, window?, band?, target?);
@@ -112,7 +119,7 @@ fn one(table: &Table<'_>, name: Read<String>, columns: &[Column], rows: Option<&
         return Err(field.refuse(RefusalKind::Rule, message, Some("leave `target` out".to_owned())));
     }
     let target = target.map(|(target, _)| target);
-    let metric = Metric { name, of: column.name.clone(), kind, window, band, target };
+    let metric = Metric { name, of: column.name.clone(), kind, window, band, target, levels };
     Ok(MetricPlan { metric, place: table.node.place.clone(), of })
 }
 
@@ -172,6 +179,19 @@ fn in_unit(field: &Field<'_>, column: &Column) -> Read<f64> {
     }
     let help = format!("write a number: it is in {}", column.unit);
     Err(field.refuse(RefusalKind::BadQuantity, format!("is {}, and the unit varies", field.node.written()), Some(help)))
+}
+
+/// Two shares of a way, the lower one first.
+fn levels(field: &Field<'_>) -> Read<[f64; 2]> {
+    let items = field.items("an array of two shares, [from, to]")?;
+    let shares = all(items.iter().map(|item| item.number("")))?;
+    match shares[..] {
+        [from, to] if 0.0 <= from && from < to && to <= 1.0 => Ok([from, to]),
+        _ => {
+            let message = "must be two shares from 0 to 1 of the way to the target, the lower one first";
+            Err(field.refuse(RefusalKind::OutOfRange, message, Some("write levels = [0.1, 0.9]".to_owned())))
+        }
+    }
 }
 
 fn band(field: &Field<'_>, column: &Column) -> Read<Band> {

@@ -17,7 +17,7 @@ use springpot::system::Motion;
 pub(super) fn gain(gather: &mut Gather, scene: &Scene<'_>, steps: &[Step], slope: Slope) -> Moved {
     let (by, name) = (slope.number()?, key(&steps[2]));
     let controlled = scene.system.control.controller.as_ref().ok_or("there is no controller")?;
-    let law = controlled.law.variation().ok_or("no derivative is known of its controller")?;
+    let law = controlled.variation().ok_or("no derivative is known of its controller")?;
     let number = |velocity| ControllerNumber { name: name.to_owned(), velocity };
     let numbers: Vec<ControllerNumber> = if law.has(&number(None)) {
         vec![number(None)]

@@ -44,6 +44,43 @@ const PD: &str =
     "kind = \"pd-gravity\"\nkp = 10\nkd = 1\nreference = { kind = \"move\", to = { q1 = 0.5 }, duration = 1 }\n";
 
 #[test]
+fn what_a_controller_sees_is_said_where_it_belongs() {
+    let pd = controlled(PD);
+    let gripper = controlled(
+        "kind = \"impedance\"\nkp = 10\nreference = { kind = \"gripper-path\", x = \"0.6\", y = \"0\", z = \"0\" }\n",
+    );
+    for extra in [
+        "filter = \"5 ms\"",
+        "derivative_on = \"measurement\"",
+        "set_point_weight = { q1 = 0.5 }",
+        "feed_forward = { q2 = \"3*t\" }",
+        "sample = 0.01\nnoise = { sd = { q1 = \"1 mrad\", q2 = \"1 mm\" }, seed = 3 }\nquantization = { q1 = 1e-4 }",
+    ] {
+        assert!(cases(&format!("{pd}{extra}\n")).unwrap().plan(0).is_ok(), "{extra}");
+    }
+    assert!(cases(&format!("{gripper}derivative_on = \"measurement\"\n")).unwrap().plan(0).is_ok());
+    for (text, extra, kind, words) in [
+        (&pd, "filter = ‸0", OutOfRange, "filter"),
+        (&pd, "derivative_on = ‸\"state\"", UnknownName, "error"),
+        (&pd, "set_point_weight = ‸-1", OutOfRange, "a weight is not negative"),
+        (&pd, "feed_forward = { ‸q3 = 1 }", UnknownKey, "q3"),
+        (&pd, "feed_forward = { q2 = \"3 ‸rad\" }", BadQuantity, "does not fit"),
+        (&pd, "noise = ‸{ sd = 1 }", Rule, "needs a `sample`"),
+        (&pd, "quantization = ‸1", Rule, "needs a `sample`"),
+        (&pd, "sample = 0.01\nnoise = ‸{ seed = 1 }", Missing, "sd"),
+        (&pd, "sample = 0.01\nnoise = { sd = \"1 ‸mrad\" }", BadQuantity, "does not fit"),
+        (&pd, "sample = 0.01\nnoise = { sd = 1, ‸power = 1 }", UnknownKey, "power"),
+        (&pd, "sample = 0.01\nquantization = ‸-1", OutOfRange, "a step is not negative"),
+        (&gripper, "‸set_point_weight = 0.5", Rule, "belongs to kind"),
+        (&gripper, "‸filter = 0.5", Rule, "belongs to kind"),
+        (&gripper, "sample = 0.01\n‸noise = { sd = 1 }", Rule, "belongs to kind"),
+    ] {
+        let line = format!("{}\n", text.trim_end().lines().last().unwrap());
+        assert_all_refused(text, &[(&[(&line, &format!("{line}{extra}\n"))], kind, words)]);
+    }
+}
+
+#[test]
 fn feedback_sees_what_is_known() {
     assert_all_refused(
         &with("torque = { q1 = 0 }"),

@@ -21,8 +21,7 @@ impl ComputedTorque {
     /// q̈_d + kd·ė + kp·e.
     pub(super) fn accelerations(&self, at: &At, a: &mut [f64]) {
         for (k, a) in a.iter_mut().enumerate() {
-            let [error, rate] = at.error(k);
-            *a = at.aim.a[k] + self.kd[k] * rate + self.kp[k] * error;
+            *a = at.aim.a[k] + self.kd[k] * at.derived(k) + self.kp[k] * at.weighted(k);
         }
     }
 }

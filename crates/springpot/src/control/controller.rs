@@ -1,5 +1,6 @@
 //! What a law of control answers.
 
+use super::shaping::Shaping;
 use super::variation::ControllerVariation;
 use crate::dynamics::{Kinematics, RneaDerivatives, Workspace};
 use crate::model::{Model, Site};
@@ -35,6 +36,12 @@ pub trait Controller: fmt::Debug + Send + Sync {
         Vec::new()
     }
 
+    /// The terms kd·ė of its forces as such of order 1, which stand in [`Self::error_terms`] where their derivatives go through a filter
+    /// ([`super::Shaping`]); its forces are without them then ([`At::derived`]).
+    fn rate_terms(&self) -> Vec<ErrorTerm> {
+        Vec::new()
+    }
+
     /// Whether the generalized forces of the elements are taken off its forces.
     fn compensates_elements(&self) -> bool {
         false
@@ -56,7 +63,7 @@ pub trait Controller: fmt::Debug + Send + Sync {
 pub struct ErrorTerm {
     /// The velocity, of a joint of one degree.
     pub velocity: usize,
-    /// −1 ≤ order < 0: an integral; 0 < order < 1: a derivative.
+    /// −1 ≤ order < 0: an integral; 0 < order < 1, and 1 through a filter: a derivative.
     pub order: f64,
     /// Its factor, N·m/(rad·s^−order) or N/(m·s^−order).
     pub gain: f64,
@@ -92,6 +99,8 @@ pub struct At<'a> {
     pub kinematics: &'a Kinematics,
     /// The aim.
     pub aim: &'a Aim,
+    /// How the parts of the law see its error.
+    pub shaping: &'a Shaping,
 }
 
 /// ∂τ/∂q and ∂τ/∂v, nv × nv, row-major: row b belongs to τ_b.
@@ -136,6 +145,21 @@ impl At<'_> {
     /// Error of the coordinate that velocity `k` of a joint of one degree moves, and its rate; zeros for other joints.
     pub fn error(&self, k: usize) -> [f64; 2] {
         self.aim.error(self.model, k, self.q, self.v)
+    }
+
+    /// What the proportional part takes: b·q_d − q.
+    pub fn weighted(&self, k: usize) -> f64 {
+        let weight = self.shaping.weight(k);
+        self.model.coordinate_of(k).map_or(0.0, |place| weight * self.aim.q[place] - self.q[place])
+    }
+
+    /// The rate that the derivative part takes: q̇_d − q̇, or −q̇; 0 where it goes through a filter.
+    pub fn derived(&self, k: usize) -> f64 {
+        match self.shaping {
+            Shaping { filter: Some(_), .. } => 0.0,
+            Shaping { on_measurement: true, .. } => self.model.coordinate_of(k).map_or(0.0, |_| -self.v[k]),
+            _ => self.error(k)[1],
+        }
     }
 }
 

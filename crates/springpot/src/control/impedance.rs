@@ -19,7 +19,10 @@ impl Impedance {
     /// The force of spring and dashpot, N, in world axes.
     pub(super) fn force(&self, at: &At) -> Vec3 {
         let Some(site) = at.gripper else { return Vec3::default() };
-        let [position, velocity] = at.aim.gripper.map(Vec3);
+        let [position, mut velocity] = at.aim.gripper.map(Vec3);
+        if at.shaping.on_measurement {
+            velocity = Vec3::default();
+        }
         let (off, slip) = (position - at.kinematics.position(site), velocity - at.kinematics.velocity(site));
         off * self.kp + slip * self.kd
     }

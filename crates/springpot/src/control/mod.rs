@@ -13,6 +13,7 @@ mod pd_gravity;
 mod pid;
 mod reference;
 mod sense;
+mod shaping;
 mod variation;
 
 pub use computed_torque::ComputedTorque;
@@ -24,8 +25,10 @@ pub use pd_gravity::PdGravity;
 pub use pid::Pid;
 pub use reference::{Profile, Reference};
 pub use sense::Sense;
+pub use shaping::{Measurement, Shaping};
 pub use variation::{ControllerNumber, ControllerVariation, RobotChange, TermChange};
 
+use crate::signal::Signal;
 use std::sync::Arc;
 
 /// All that controls a system; the default controls nothing.
@@ -76,6 +79,34 @@ pub struct Controlled {
     pub anti_windup: AntiWindup,
     /// When it acts; `None`: at every time.
     pub sampling: Option<Sampling>,
+    /// How the parts of the law see its error.
+    pub shaping: Shaping,
+    /// Forces that are added to those of the law, before all limits: velocities and functions of time, N·m or N.
+    pub feed_forward: Vec<(usize, Signal)>,
+    /// How it sees coordinates, where it is sampled; `None`: as they are.
+    pub measurement: Option<Measurement>,
+}
+
+impl Controlled {
+    /// τ (nv) without its error terms and before all limits.
+    pub(crate) fn torque(&self, at: &At, scratch: &mut Scratch, tau: &mut [f64]) {
+        self.law.torque(at, scratch, tau);
+        self.feed_forward.iter().for_each(|(k, signal)| tau[*k] += signal.value(at.t));
+    }
+
+    /// The terms of its forces that hang on the past of an error.
+    pub(crate) fn error_terms(&self) -> Vec<ErrorTerm> {
+        let mut terms = self.law.error_terms();
+        if self.shaping.filter.is_some() {
+            terms.extend(self.law.rate_terms());
+        }
+        terms
+    }
+
+    /// What it says where its run is differentiated; `None` where nothing is known of that.
+    pub fn variation(&self) -> Option<&dyn ControllerVariation> {
+        self.law.variation().filter(|_| self.shaping.is_plain() && self.measurement.is_none())
+    }
 }
 
 /// When a sampled law is evaluated: at k·period, k = 0, 1, …, from the state just before. Its value holds from `delay` periods later on; before the first one it is 0.

@@ -1,6 +1,6 @@
 //! Proportional–derivative control with gravity.
 
-use super::controller::{At, Controller, Scratch, TorqueSlopes};
+use super::controller::{At, Controller, ErrorTerm, Scratch, TorqueSlopes};
 use super::variation::ControllerVariation;
 use crate::dynamics::{gravity_into, rnea_derivatives_into};
 
@@ -17,8 +17,7 @@ impl Controller for PdGravity {
     fn torque(&self, at: &At, scratch: &mut Scratch, tau: &mut [f64]) {
         gravity_into(at.model, at.kinematics, &mut scratch.workspace, tau);
         for (k, tau) in tau.iter_mut().enumerate() {
-            let [error, rate] = at.error(k);
-            *tau += self.kp[k] * error + self.kd[k] * rate;
+            *tau += self.kp[k] * at.weighted(k) + self.kd[k] * at.derived(k);
         }
     }
 
@@ -27,8 +26,13 @@ impl Controller for PdGravity {
         let n = at.model.nv();
         for k in 0..n {
             slopes.d_q[k * n + k] -= self.kp[k];
-            slopes.d_v[k * n + k] -= self.kd[k];
+            slopes.d_v[k * n + k] -= if at.shaping.filter.is_none() { self.kd[k] } else { 0.0 };
         }
+    }
+
+    fn rate_terms(&self) -> Vec<ErrorTerm> {
+        let of_rates = (0..self.kd.len()).filter(|k| self.kd[*k] != 0.0);
+        of_rates.map(|velocity| ErrorTerm { velocity, order: 1.0, gain: self.kd[velocity] }).collect()
     }
 
     fn variation(&self) -> Option<&dyn ControllerVariation> {

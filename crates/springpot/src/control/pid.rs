@@ -22,8 +22,8 @@ pub struct Pid {
 impl Controller for Pid {
     fn torque(&self, at: &At, _: &mut Scratch, tau: &mut [f64]) {
         for (k, tau) in tau.iter_mut().enumerate() {
-            let [error, rate] = at.error(k);
-            *tau = self.kp[k] * error + if self.mu[k] == 1.0 { self.kd[k] * rate } else { 0.0 };
+            let rate = if self.mu[k] == 1.0 { at.derived(k) } else { 0.0 };
+            *tau = self.kp[k] * at.weighted(k) + self.kd[k] * rate;
         }
     }
 
@@ -31,7 +31,8 @@ impl Controller for Pid {
         let n = at.model.nv();
         for k in 0..n {
             slopes.d_q[k * n + k] -= self.kp[k];
-            slopes.d_v[k * n + k] -= if self.mu[k] == 1.0 { self.kd[k] } else { 0.0 };
+            let acts = self.mu[k] == 1.0 && at.shaping.filter.is_none();
+            slopes.d_v[k * n + k] -= if acts { self.kd[k] } else { 0.0 };
         }
     }
 
@@ -46,6 +47,11 @@ impl Controller for Pid {
             }
         }
         terms
+    }
+
+    fn rate_terms(&self) -> Vec<ErrorTerm> {
+        let of_rates = (0..self.kp.len()).filter(|k| self.kd[*k] != 0.0 && self.mu[*k] == 1.0);
+        of_rates.map(|velocity| ErrorTerm { velocity, order: 1.0, gain: self.kd[velocity] }).collect()
     }
 
     fn variation(&self) -> Option<&dyn ControllerVariation> {

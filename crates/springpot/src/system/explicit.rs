@@ -42,7 +42,7 @@ impl System {
         if let Some(j) = (0..model.joint_count()).find(sticks) {
             return Err(Unfit::Sticks { joint: model.v_labels()[model.v_range(j).start].name.clone() });
         }
-        if self.control.controller.as_ref().is_some_and(|controlled| !controlled.law.error_terms().is_empty()) {
+        if self.control.controller.as_ref().is_some_and(|controlled| !controlled.error_terms().is_empty()) {
             return Err(Unfit::Remembers);
         }
         match &self.motion {

@@ -1,7 +1,7 @@
 //! What a run is differentiated by: numbers of its system, and what each of them moves.
 
 use super::System;
-use crate::control::{Controller, ControllerNumber, ErrorTerm, FeedbackSlope, TermChange};
+use crate::control::{Controlled, ControllerNumber, ErrorTerm, FeedbackSlope, TermChange};
 use crate::elements::Element;
 use crate::law::Network;
 use crate::model::Model;
@@ -38,8 +38,8 @@ impl Sensitivity {
     }
 
     /// Adds the terms of a controller whose gain is 0 and moves.
-    pub(crate) fn add_terms(&self, law: &dyn Controller, terms: &mut Vec<ErrorTerm>) {
-        let Some(variation) = law.variation() else { return };
+    pub(crate) fn add_terms(&self, controlled: &Controlled, terms: &mut Vec<ErrorTerm>) {
+        let Some(variation) = controlled.variation() else { return };
         for TermChange { term, .. } in self.numbers().flat_map(|number| variation.terms_by_number(number)) {
             let is_same = |own: &ErrorTerm| own.velocity == term.velocity && (own.order < 0.0) == (term.order < 0.0);
             if !terms.iter().any(is_same) {

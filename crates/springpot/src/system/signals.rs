@@ -33,10 +33,10 @@ impl System {
     pub(crate) fn varies(&self) -> bool {
         let Motion::Forward(forward) = &self.motion else { return true };
         let varies = |signal: &Signal| signal.is_constant().is_none();
-        let aims =
-            self.control.controller.as_ref().is_some_and(|controlled| {
-                controlled.reference.trajectory().signals().iter().any(|signal| varies(signal))
-            });
+        let aims = self.control.controller.as_ref().is_some_and(|controlled| {
+            let forward = controlled.feed_forward.iter().any(|(_, signal)| varies(signal));
+            forward || controlled.reference.trajectory().signals().iter().any(|signal| varies(signal))
+        });
         forward.has_paths()
             || forward.forces(&self.model).any(|(_, signal)| varies(signal))
             || self.control.laws().any(|(law, _)| !law.parts_of_time().is_empty())
@@ -151,7 +151,8 @@ impl System {
     /// The reference of a controller that follows accelerations, or has D^mu of its error, must not jump, sampled or not.
     pub(crate) fn look_for_jumps_of_references(&self, settings: &Settings, stop: &AtomicBool) -> Result<(), RunError> {
         let Some(controlled) = &self.control.controller else { return Ok(()) };
-        let derives = || controlled.law.error_terms().iter().any(|term| term.order > 0.0);
+        let derives =
+            || !controlled.shaping.on_measurement && controlled.error_terms().iter().any(|term| term.order > 0.0);
         if !controlled.law.follows_accelerations() && !derives() {
             return Ok(());
         }
@@ -196,6 +197,8 @@ impl System {
     fn signals(&self) -> impl Iterator<Item = &Signal> {
         let feedback = self.control.laws().flat_map(|(law, _)| law.parts_of_time());
         let aims = self.control.controller.iter().flat_map(|controlled| controlled.reference.trajectory().signals());
+        let forward = self.control.controller.iter().flat_map(|controlled| &controlled.feed_forward);
+        let aims = aims.chain(forward.map(|(_, signal)| signal));
         let inputs = self.elements.iter().flat_map(|element| &element.inputs).chain(feedback).chain(aims);
         let motion = match &self.motion {
             Motion::Given(trajectory) => trajectory.signals(),
@@ -250,6 +253,10 @@ impl System {
             let signals = controlled.reference.trajectory().named_signals(&self.model).into_iter();
             let position = |signal| Watched { signal, is_position: true, slack: 1.0 };
             watched.extend(signals.map(|(name, signal)| (format!("{name} as the reference has it"), position(signal))));
+            watched.extend(controlled.feed_forward.iter().map(|(k, signal)| {
+                let name = format!("the feed-forward of joint \"{}\"", self.model.v_labels()[*k].name);
+                (name, Watched { signal, is_position: false, slack: 1.0 })
+            }));
         }
         watched
     }

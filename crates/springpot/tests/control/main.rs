@@ -7,6 +7,7 @@ mod going_on;
 mod kinks_of_time;
 mod order;
 mod readings;
+mod shaping;
 #[path = "../support/mod.rs"]
 mod support;
 mod variation;

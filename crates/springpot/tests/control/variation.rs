@@ -2,7 +2,7 @@
 
 use crate::support::cases;
 use springpot::control::{
-    Aim, At, ComputedTorque, Controller, ControllerNumber, Impedance, PdGravity, Pid, RobotChange, Scratch,
+    Aim, At, ComputedTorque, Controller, ControllerNumber, Impedance, PdGravity, Pid, RobotChange, Scratch, Shaping,
     TorqueSlopes,
 };
 use springpot::dynamics::Kinematics;
@@ -59,7 +59,8 @@ fn aim(numbers: &[f64]) -> Aim {
 fn torque(law: &dyn Controller, system: &System, q: &[f64], v: &[f64], wanted: &[f64]) -> Vec<f64> {
     let (model, aim) = (&system.model, aim(wanted));
     let kinematics = Kinematics::at_velocity(model, q, v);
-    let at = At { model, gripper: system.gripper.as_ref(), t: 0.0, q, v, kinematics: &kinematics, aim: &aim };
+    let (gripper, shaping) = (system.gripper.as_ref(), &Shaping::default());
+    let at = At { model, gripper, t: 0.0, q, v, kinematics: &kinematics, aim: &aim, shaping };
     let mut tau = vec![0.0; 3];
     law.torque(&at, &mut Scratch::new(model), &mut tau);
     tau
@@ -106,7 +107,8 @@ fn every_law_knows_its_derivatives() {
     let kinematics = Kinematics::at_velocity(model, &Q, &V);
     let wanted = aim(&AIM);
     let site = system.gripper.as_ref();
-    let at = At { model, gripper: site, t: 0.0, q: &Q, v: &V, kinematics: &kinematics, aim: &wanted };
+    let shaping = &Shaping::default();
+    let at = At { model, gripper: site, t: 0.0, q: &Q, v: &V, kinematics: &kinematics, aim: &wanted, shaping };
     let mut scratch = Scratch::new(model);
     let moved = |values: &[f64], k: usize, value: f64| {
         let mut values = values.to_vec();

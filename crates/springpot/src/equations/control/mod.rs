@@ -23,9 +23,10 @@ pub(crate) use variation::{
 };
 
 use crate::collocation::STAGES;
-use crate::control::{Aim, AntiWindup, At, Control, Controlled, Feedback, Limit, Scratch, TorqueSlopes};
+use crate::control::{Aim, AntiWindup, At, Control, Controlled, Feedback, Limit, Scratch, Shaping, TorqueSlopes};
 use crate::dynamics::Kinematics;
 use crate::law::{InputValue, Response};
+use crate::model::Model;
 use crate::system::System;
 use crate::system::error::RunError;
 use mode::Mode;
@@ -59,6 +60,8 @@ pub(crate) struct ControlRun {
     /// Errors at both ends of a step whose nodes are not known, and when it starts and ends, s.
     ends: [Vec<[f64; 2]>; 2],
     span: [f64; 2],
+    /// The longest step in which a filter of a sampled controller is known, s: no force tells of it.
+    longest: f64,
     /// Whether a step is known at its nodes, not at its ends alone.
     knows_nodes: bool,
     known: Known,
@@ -152,6 +155,8 @@ struct Node {
     rates: Vec<f64>,
     /// Error and its rate of every joint that the controller drives.
     errors: Vec<[f64; 2]>,
+    /// The same as derivatives with a past take it.
+    derived: Vec<[f64; 2]>,
     /// The controller's force without its terms (nv).
     law: Vec<f64>,
     /// Of every joint that it drives, before all limits, and before the last one.
@@ -235,6 +240,7 @@ impl ControlRun {
             spare: Vec::new(),
             ends: Default::default(),
             span: [0.0; 2],
+            longest: f64::INFINITY,
             knows_nodes: !has_fixed_steps,
             known: Known::default(),
             row: AtRow { aim: Aim::default(), kinematics: Kinematics::new(model) },
@@ -276,17 +282,21 @@ impl ControlRun {
             }
         }
         self.aim_at(system, 0.0, 0)?;
-        let mut laws = controlled.law.error_terms();
+        let mut laws = controlled.error_terms();
         if let Some(by) = &system.sensitivity {
-            by.add_terms(&*controlled.law, &mut laws);
+            by.add_terms(&controlled, &mut laws);
         }
         for law in laws {
             let Some(joint) = self.joints.iter_mut().find(|joint| joint.velocity == law.velocity) else { continue };
             if law.order < 0.0 && law.gain != 0.0 {
                 joint.integral = Some(self.terms.len());
             }
-            let [error, _] = self.nodes[0].aim.error(&system.model, law.velocity, q, v);
-            self.terms.push(Term::begin(law, error).map_err(RunError::of_kernel("the controller"))?);
+            let mut error = self.nodes[0].aim.error(&system.model, law.velocity, q, v);
+            if law.order > 0.0 && controlled.shaping.on_measurement {
+                error = measured(&system.model, law.velocity, q, v);
+            }
+            let term = Term::begin(law, error[0], controlled.shaping.filter);
+            self.terms.push(term.map_err(RunError::of_kernel("the controller"))?);
         }
         Ok(())
     }
@@ -296,6 +306,8 @@ impl ControlRun {
     /// # Errors
     /// Where one cannot be built.
     pub(crate) fn open(&mut self, tolerance: f64, first: f64, horizon: f64) -> Result<(), RunError> {
+        let filter = self.controlled().and_then(|controlled| controlled.shaping.filter).filter(|_| !self.is_continuous);
+        self.longest = filter.map_or(f64::INFINITY, |time| term::longest_step(time, tolerance));
         let opened = self.terms.iter_mut().try_for_each(|term| term.open(tolerance, first, horizon));
         opened.map_err(RunError::of_kernel("the controller"))
     }
@@ -309,6 +321,7 @@ impl ControlRun {
 
     /// How long a step from t may be, at most h, so that its nodes see what the reference does.
     pub(crate) fn reach(&self, t: f64, h: f64) -> f64 {
+        let h = h.min(self.longest);
         let followed = self.controlled().filter(|_| self.is_continuous);
         followed.map_or(h, |controlled| controlled.reference.trajectory().reach(t, h))
     }
@@ -373,7 +386,7 @@ impl ControlRun {
 }
 
 /// What a controller is asked of a robot that is looked at.
-fn at<'a>(eye: &Eye<'a>, aim: &'a Aim) -> At<'a> {
+fn at<'a>(eye: &Eye<'a>, aim: &'a Aim, shaping: &'a Shaping) -> At<'a> {
     At {
         model: &eye.system.model,
         gripper: eye.system.gripper.as_ref(),
@@ -382,7 +395,13 @@ fn at<'a>(eye: &Eye<'a>, aim: &'a Aim) -> At<'a> {
         v: eye.v,
         kinematics: eye.kinematics,
         aim,
+        shaping,
     }
+}
+
+/// −q of the coordinate that velocity `k` of a joint of one degree moves, and its rate: what is derived in place of its error.
+fn measured(model: &Model, k: usize, q: &[f64], v: &[f64]) -> [f64; 2] {
+    model.coordinate_of(k).map_or([0.0; 2], |place| [-q[place], -v[k]])
 }
 
 /// The value of an input that follows from the state.

@@ -1,7 +1,7 @@
 //! Control at one time, for rows and for the ledger.
 
 use super::eye::Eye;
-use super::{ControlRun, LawRun, Target, at, input};
+use super::{ControlRun, LawRun, Target, at, input, measured};
 use crate::control::Feedback;
 use crate::dynamics::Kinematics;
 use crate::elements::ElementBank;
@@ -96,8 +96,8 @@ impl ControlRun {
             let (t, q, v) = (evaluation.t, &evaluation.q[..], &evaluation.v[..]);
             let eye = Eye { system: cx.system, t, q, v, kinematics, element: &read };
             let mut law = vec![0.0; torque.len()];
-            let at = at(&eye, &self.row.aim);
-            controlled.law.torque(&at, &mut self.scratch, &mut law);
+            let at = at(&eye, &self.row.aim, &controlled.shaping);
+            controlled.torque(&at, &mut self.scratch, &mut law);
             if self.compensates {
                 for (e, element) in evaluation.elements.iter().enumerate() {
                     let point: Point = element.point(t);
@@ -109,9 +109,14 @@ impl ControlRun {
             for joint in &self.joints {
                 let own = self.terms.iter().filter(|term| term.law.velocity == joint.velocity);
                 let error = at.error(joint.velocity);
+                let derived = match controlled.shaping.on_measurement {
+                    true => measured(&cx.system.model, joint.velocity, q, v),
+                    false => error,
+                };
                 let wanted = law[joint.velocity]
                     + own
-                        .map(|term| match theta {
+                        .map(|term| (term, if term.is_integral() { error } else { derived }))
+                        .map(|(term, error)| match theta {
                             Some(theta) => term.at(theta, error, joint.mode.integrand),
                             None => term.now(error, joint.mode.integrand),
                         })

@@ -2,7 +2,7 @@
 
 use super::eye::{Eye, Shown};
 use super::variation::{Held as HeldVariation, OfSamples, Sides};
-use super::{ControlRun, Target};
+use super::{ControlRun, Target, at, measured as on};
 use crate::control::{Aim, At, Control, Feedback, Sampling, Scratch, Sense};
 use crate::equations::context::Held;
 use crate::observe::Snapshot;
@@ -30,6 +30,8 @@ pub(crate) struct Sampler {
     /// What acts.
     acting: Arc<Held>,
     aim: Aim,
+    /// Coordinates as the controller sees them (nq).
+    measured: Vec<f64>,
     scratch: Scratch,
     /// Of every law, whether it is due, and what it says.
     due: Vec<bool>,
@@ -140,6 +142,7 @@ impl Sampler {
             state,
             acting: Arc::new(held),
             aim: Aim::default(),
+            measured: Vec::new(),
             scratch: Scratch::new(&system.model),
             seen: Vec::new(),
             limited: vec![Sides::default(); nv],
@@ -343,19 +346,27 @@ impl Sampler {
     /// Works out what the controller says (nv), all limits included.
     fn ask(&mut self, law: usize, t: f64, eye: &Eye, shown: &dyn Shown, run: &ControlRun) -> Result<(), RunError> {
         let (system, period) = (eye.system, self.laws[law].sampling.period);
-        let Self { control, aim, scratch, said, state, driven, limited, .. } = self;
+        let Self { control, aim, scratch, said, state, driven, limited, measured, .. } = self;
         let (tau, controlled) = (&mut said[law], control.controller.as_ref().expect("a controller that is sampled"));
         let site = system.gripper.as_ref();
         controlled.reference.at_into(&system.model, site, t, &mut scratch.kinematics, aim)?;
-        let at =
-            At { model: &system.model, gripper: site, t, q: eye.q, v: eye.v, kinematics: eye.kinematics, aim: &*aim };
-        controlled.law.torque(&at, scratch, tau);
+        let at = At { t, ..at(eye, aim, &controlled.shaping) };
+        measured.clear();
+        measured.extend_from_slice(eye.q);
+        if let Some(measurement) = &controlled.measurement {
+            for (k, place) in driven.iter().filter_map(|&k| Some((k, system.model.coordinate_of(k)?))) {
+                measured[place] = measurement.of(eye.q[place], k, state.counts[law]);
+            }
+        }
+        controlled.torque(&At { q: &*measured, ..at }, scratch, tau);
         if controlled.law.compensates_elements() {
             shown.add_pull(tau);
         }
         for &k in &*driven {
             let tau = &mut tau[k];
-            *tau += run.terms_now(k, at.error(k));
+            let error = at.error(k);
+            let derived = if controlled.shaping.on_measurement { on(&system.model, k, eye.q, eye.v) } else { error };
+            *tau += run.terms_now(k, error, derived);
             let limit = controlled.limits.get(k).copied().unwrap_or_default();
             limited[k] = Sides::default();
             if state.has_said {

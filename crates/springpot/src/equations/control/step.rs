@@ -2,8 +2,8 @@
 
 use super::eye::{Eye, InputSlopes};
 use super::mode::Bound;
-use super::term::Integrand;
-use super::{ControlRun, LawRun, Target, at, input};
+use super::term::{Integrand, Term};
+use super::{ControlRun, LawRun, Node, Target, at, input, measured};
 use crate::collocation::{Nodes, RADAU_NODES, STAGES};
 use crate::control::TorqueSlopes;
 use crate::dynamics::RneaDerivatives;
@@ -35,7 +35,7 @@ impl ControlRun {
                 .enumerate()
                 .find(|(_, joint)| joint.velocity == term.law.velocity)
                 .expect("a term of a joint that is driven");
-            term.start(t, h, Nodes::Radau, nodes[0].errors[c], joint.mode.integrand);
+            term.start(t, h, Nodes::Radau, nodes[0].taken_by(term, c), joint.mode.integrand);
         }
         Ok(())
     }
@@ -62,11 +62,16 @@ impl ControlRun {
         node.rates.clear();
         node.rates.extend(laws.iter().map(|law| if law.stretches { law.rate(eye) } else { 0.0 }));
         let Some(controlled) = &control.controller else { return };
-        let at = at(eye, &node.aim);
+        let at = at(eye, &node.aim, &controlled.shaping);
         node.errors.clear();
         node.errors.extend(joints.iter().map(|joint| at.error(joint.velocity)));
+        node.derived.clear();
+        if controlled.shaping.on_measurement {
+            let model = &eye.system.model;
+            node.derived.extend(joints.iter().map(|joint| measured(model, joint.velocity, eye.q, eye.v)));
+        }
         if *is_continuous {
-            controlled.law.torque(&at, scratch, &mut node.law);
+            controlled.torque(&at, scratch, &mut node.law);
         }
     }
 
@@ -156,7 +161,7 @@ impl ControlRun {
             for term in terms {
                 let found = joints.iter().enumerate().find(|(_, joint)| joint.velocity == term.law.velocity);
                 let Some((c, joint)) = found else { continue };
-                let errors = std::array::from_fn(|i| nodes[i + 1].errors[c]);
+                let errors = std::array::from_fn(|i| nodes[i + 1].taken_by(term, c));
                 term.take(&errors, joint.mode.integrand);
             }
         }
@@ -184,8 +189,10 @@ impl ControlRun {
         }
         let value = |run: &Self, m: usize| {
             let law = run.terms[m].law;
-            let found = run.joints.iter().zip(&run.nodes[0].errors).find(|(joint, _)| joint.velocity == law.velocity);
-            found.map_or(0.0, |(joint, error)| run.terms[m].now(*error, joint.mode.integrand))
+            let found = run.joints.iter().enumerate().find(|(_, joint)| joint.velocity == law.velocity);
+            found.map_or(0.0, |(c, joint)| {
+                run.terms[m].now(run.nodes[0].taken_by(&run.terms[m], c), joint.mode.integrand)
+            })
         };
         self.combine(0, &value, &sum);
     }
@@ -232,7 +239,7 @@ impl ControlRun {
         d_q.fill(0.0);
         d_v.fill(0.0);
         if let Some(controlled) = control.controller.as_ref().filter(|_| *is_continuous) {
-            controlled.law.slopes(&at(eye, &node.aim), scratch, slopes);
+            controlled.law.slopes(&at(eye, &node.aim, &controlled.shaping), scratch, slopes);
             for k in 0..n {
                 let follows = joints.iter().any(|joint| joint.velocity == k && joint.mode.follows());
                 if !follows {
@@ -373,12 +380,13 @@ impl ControlRun {
         }
     }
 
-    /// The terms of the force on velocity `k` between two steps, where its error and the rate of that are these.
-    pub(super) fn terms_now(&self, k: usize, error: [f64; 2]) -> f64 {
+    /// The terms of the force on velocity `k` between two steps, where its error, and what derivatives take, and the rates of these are so.
+    pub(super) fn terms_now(&self, k: usize, error: [f64; 2], derived: [f64; 2]) -> f64 {
         let integrand =
             |k: usize| self.joints.iter().find(|joint| joint.velocity == k).map(|joint| joint.mode.integrand);
         let own = self.terms.iter().filter(|term| term.law.velocity == k);
-        own.map(|term| term.now(error, integrand(k).unwrap_or_default())).sum()
+        let taken = |term: &Term| if term.is_integral() { error } else { derived };
+        own.map(|term| term.now(taken(term), integrand(k).unwrap_or_default())).sum()
     }
 
     /// Takes over on which side of its limit each force of a sampled controller is (nv).
@@ -420,9 +428,13 @@ impl ControlRun {
         self.span = [from, to];
         for (k, (t, q, v)) in ends.into_iter().enumerate() {
             self.aim_at(system, t, 0)?;
-            let Self { terms, nodes, ends, .. } = &mut *self;
+            let Self { control, terms, nodes, ends, .. } = &mut *self;
             ends[k].clear();
-            ends[k].extend(terms.iter().map(|term| nodes[0].aim.error(&system.model, term.law.velocity, q, v)));
+            let on_measurement = control.controller.as_ref().is_some_and(|own| own.shaping.on_measurement);
+            ends[k].extend(terms.iter().map(|term| match on_measurement && !term.is_integral() {
+                true => measured(&system.model, term.law.velocity, q, v),
+                false => nodes[0].aim.error(&system.model, term.law.velocity, q, v),
+            }));
         }
         Ok(())
     }
@@ -441,6 +453,14 @@ impl ControlRun {
             _ => Integrand::Runs,
         };
         (to - from, errors, integrand)
+    }
+}
+
+impl Node {
+    /// What a term of joint `c` takes here: its error, or what is derived in place of it, and the rate of that.
+    pub(super) fn taken_by(&self, term: &Term, c: usize) -> [f64; 2] {
+        let derived = self.derived.get(c).filter(|_| !term.is_integral());
+        derived.map_or_else(|| self.errors[c], |derived| *derived)
     }
 }
 

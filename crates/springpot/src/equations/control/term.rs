@@ -1,7 +1,10 @@
 //! What a run keeps of the error of one joint for its controller: an integral or a fractional derivative.
 
+mod filter;
 mod variation;
 
+use filter::Filter;
+pub(super) use filter::longest_step;
 pub(super) use variation::TermVariation;
 
 use crate::collocation::{MAX_NODES, Nodes, STAGES};
@@ -19,6 +22,8 @@ use serde::{Deserialize, Serialize};
 pub(super) struct Term {
     pub(super) law: ErrorTerm,
     pub(super) kept: Kept,
+    /// What a derivative goes through.
+    filter: Option<Filter>,
     nodes: Nodes,
     form: Form,
     start: StepStart,
@@ -38,6 +43,8 @@ pub(super) struct Kept {
     integral: f64,
     /// What is integrated, at the end of the last step; the rate of e of a derivative.
     rate: f64,
+    /// What a filter gives there.
+    filtered: f64,
 }
 
 /// What an integral does in a step.
@@ -53,14 +60,16 @@ pub(super) enum Integrand {
 }
 
 impl Term {
-    /// At t = 0, where the error is `error`.
-    pub(super) fn begin(law: ErrorTerm, error: f64) -> Result<Self, KernelError> {
+    /// At t = 0, where the error is `error`; a derivative goes through a `filter` of that time, s.
+    pub(super) fn begin(law: ErrorTerm, error: f64, filter: Option<f64>) -> Result<Self, KernelError> {
         let is_integral = law.order < 0.0;
+        let filter = filter.filter(|_| !is_integral).map(Filter::new);
         let (alpha, stroke) = if is_integral { (1.0 + law.order, 0.0) } else { (law.order, error) };
         let memory = Memory::closed(alpha, Kind::Caputo, stroke, 0.0)?;
         Ok(Self {
             law,
-            kept: Kept { memory, integral: 0.0, rate: 0.0 },
+            kept: Kept { memory, integral: 0.0, rate: 0.0, filtered: 0.0 },
+            filter,
             nodes: Nodes::Radau,
             form: Form::Rates,
             start: StepStart { t: 0.0, h: 0.0, stroke, rate: 0.0 },
@@ -81,8 +90,10 @@ impl Term {
 
     /// gain·D^order e between two steps, where the error and its rate are these.
     pub(super) fn now(&self, [error, rate]: [f64; 2], integrand: Integrand) -> f64 {
-        let Kept { memory, integral, .. } = &self.kept;
-        let value = if self.is_integral() {
+        let Kept { memory, integral, filtered, .. } = &self.kept;
+        let value = if self.filter.is_some() {
+            *filtered
+        } else if self.is_integral() {
             memory.now(*integral, if integrand == Integrand::Runs { error } else { 0.0 })
         } else {
             memory.now(error, rate)
@@ -104,6 +115,10 @@ impl Term {
         self.value[0] = self.kept.memory.now(stroke, rate);
         self.kept.memory.prepare(&self.start, nodes, self.form);
         self.affine = self.kept.memory.respond(&self.start, nodes, self.form);
+        if let Some(filter) = &mut self.filter {
+            filter.start(h, nodes, [self.kept.filtered, self.value[0]]);
+            self.value[0] = self.kept.filtered;
+        }
     }
 
     /// Takes the errors and their rates at the nodes.
@@ -152,6 +167,9 @@ impl Term {
             let own = |j: usize| stroke[i][j] * (self.stroke[j + 1] - self.stroke[0]) + rate[i][j] * self.rate[j + 1];
             self.value[i + 1] = history[i] + (0..STAGES).map(own).sum::<f64>();
         }
+        if let Some(filter) = &mut self.filter {
+            filter.take(&mut self.value[1..]);
+        }
     }
 
     /// What an integral takes at the start and at the nodes.
@@ -178,7 +196,7 @@ impl Term {
                 }
             }
         }
-        response
+        self.filter.as_ref().map_or(response, |filter| filter.respond(&response))
     }
 
     fn polynomial(&self) -> RatePolynomial {
@@ -190,6 +208,9 @@ impl Term {
 
     /// gain·D^order e at θ of the step, where the error and its rate are these.
     pub(super) fn at(&self, theta: f64, [error, rate]: [f64; 2], integrand: Integrand) -> f64 {
+        if let Some(filter) = &self.filter {
+            return self.law.gain * filter.at(self.nodes, self.start.h, theta);
+        }
         let polynomial = self.polynomial();
         let memory = &self.kept.memory;
         let value = if self.is_integral() {
@@ -206,6 +227,9 @@ impl Term {
 
     /// Takes the step into the past.
     pub(super) fn commit(&mut self) {
+        if self.filter.is_some() {
+            self.kept.filtered = self.value[STAGES];
+        }
         let polynomial = self.polynomial();
         self.take_past(&polynomial, self.stroke[STAGES], self.rate[STAGES]);
     }
@@ -215,7 +239,13 @@ impl Term {
         let polynomial = self.polynomial_of_ends(h, ends, integrand);
         let [_, [e1, v1]] = ends;
         if !self.is_integral() {
-            return self.take_past(&polynomial, e1, v1);
+            let [[e0, v0], _] = ends;
+            let first = self.filter.as_ref().map(|_| self.kept.memory.now(e0, v0));
+            self.take_past(&polynomial, e1, v1);
+            if let Some((filter, first)) = self.filter.as_ref().zip(first) {
+                self.kept.filtered = filter.along(h, self.kept.filtered, [first, self.kept.memory.now(e1, v1)]);
+            }
+            return;
         }
         let end = self.kept.integral + polynomial.travel();
         let rate = polynomial.rate(1.0);

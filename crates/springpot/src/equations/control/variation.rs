@@ -14,7 +14,7 @@ use super::mode::Mode;
 use super::term::{Integrand, TermVariation};
 use super::{ControlRun, Target};
 use crate::collocation::STAGES;
-use crate::control::{Aim, ControllerVariation, Feedback, FeedbackSlope, Scratch, Sense, TorqueSlopes};
+use crate::control::{Aim, Controlled, ControllerVariation, Feedback, FeedbackSlope, Scratch, Sense, TorqueSlopes};
 use crate::dynamics::Kinematics;
 use crate::fractional::{KernelError, MemoryTangent};
 use crate::model::Model;
@@ -146,7 +146,7 @@ impl ControlVariation {
         let controller = run.control.controller.as_ref();
         let law = match controller {
             None => None,
-            Some(controlled) => match controlled.law.variation() {
+            Some(controlled) => match controlled.variation() {
                 None => return unknown(format!("the controller {:?}", controlled.law)),
                 Some(law) => {
                     for number in by.numbers() {
@@ -256,7 +256,7 @@ impl ControlVariation {
         self.terms.clear();
         for term in &run.terms {
             let (mut gain, mut order) = (vec![0.0; count], vec![0.0; count]);
-            let variation = run.controlled().and_then(|controlled| controlled.law.variation());
+            let variation = run.controlled().and_then(Controlled::variation);
             for (p, parameter) in self.by.parameters.iter().enumerate() {
                 for seed in &parameter.seeds {
                     let (Seed::Controller { number, by }, Some(law)) = (seed, variation) else { continue };

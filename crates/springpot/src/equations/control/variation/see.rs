@@ -71,7 +71,8 @@ impl ControlVariation {
             jacobians = [point_jacobian(model, &self.wanted, site), point_jacobian_rate(model, &self.wanted, site)];
         }
         let [q, v, a] = at.motion;
-        let asked = At { model, gripper: site, t: at.t, q, v, kinematics: at.kinematics, aim };
+        let (kinematics, shaping) = (at.kinematics, &controlled.shaping);
+        let asked = At { model, gripper: site, t: at.t, q, v, kinematics, aim, shaping };
         let node = &mut self.nodes[i];
         node.gripper = aim.gripper[0];
         node.errors.clear();
