@@ -266,11 +266,13 @@ Exit codes: 0 done, 1 the file cannot be written or the port is taken, 2 the res
 Examples:
   springpot report results/arm
   springpot report results/arm results/stiff --out compared.html
+  springpot report results/arm --tex
 
 Writes one file, report.html among the results, to be read in any browser and printed: warnings, figures, each element with its law, equations, \
 parameters and source, metrics, events, the balance of energy case by case, the robot, statistics of the columns, the scenario as it was run and the \
 command that runs it again. Of two results, comparison.html among the first: what was run otherwise, metrics side by side, curves over one another, \
-and the largest difference of every column.
+and the largest difference of every column. --tex writes the same as a LaTeX document, report.tex, with its pictures in the folder \
+report-figures beside it: pdflatex makes a PDF of them.
 
 Exit codes: 0 done, 1 the file cannot be written, 2 there are no results.")]
     Report(ReportOptions),
@@ -352,6 +354,9 @@ pub(crate) struct LawsOptions {
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
+    /// Print a LaTeX document
+    #[arg(long, conflicts_with_all = ["json", "from"])]
+    pub(crate) latex: bool,
 }
 
 #[derive(Debug, Args)]
@@ -461,9 +466,12 @@ pub(crate) struct ReportOptions {
     /// Results to compare them with
     #[arg(value_name = "OTHER")]
     pub(crate) other: Option<PathBuf>,
-    /// File to write [default: report.html, or comparison.html, among the results]
+    /// File to write [default: report.html, or comparison.html, among the results; with --tex those names with .tex]
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
+    /// Write a LaTeX document, with its pictures in a folder beside it
+    #[arg(long)]
+    pub(crate) tex: bool,
 }
 
 #[derive(Debug, Clone, Args)]
@@ -818,6 +826,9 @@ pub(crate) struct DynamicsOptions {
     /// With --at: print JSON
     #[arg(long)]
     pub(crate) json: bool,
+    /// With --at: print a LaTeX document
+    #[arg(long, conflicts_with_all = ["states", "json"])]
+    pub(crate) latex: bool,
     /// Override a value of a scenario, such as element.strut.alpha=0.5; may be given several times
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub(crate) overrides: Vec<String>,

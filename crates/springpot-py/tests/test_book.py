@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import re
+import runpy
 from pathlib import Path
 
 import pytest
@@ -45,3 +46,11 @@ def test_the_page_of_the_package_has_all_of_it() -> None:
             known = set(re.findall(r"`([\w]+)[`(]|([\w]+)\([^`]*\)`", row))
             words = {word for pair in known for word in pair if word}
             assert members <= words, (name, members - words)
+
+
+def test_the_page_of_members_is_what_the_docstrings_say() -> None:
+    """Where it is not, ``python crates/springpot-py/reference.py`` writes it anew."""
+    made = runpy.run_path(str(ROOT / "crates/springpot-py/reference.py"))["page"]()
+    assert (ROOT / "docs/reference/api.md").read_text(encoding="utf-8") == made
+    for name in ("sp.run(scenario, set=None", "sp.Model.rnea(q, v, a, out=None)", "sp.Run.cases", "sp.units.parse("):
+        assert f"```text\n{name}" in made, name

@@ -30,7 +30,9 @@
 
 mod chart;
 mod draw;
+pub mod formula;
 pub mod gltf;
+pub mod latex;
 mod mesh;
 pub mod page;
 pub mod recording;

@@ -73,7 +73,7 @@ pub use prepare::{BeginError, NewRun, Prepared, Surroundings};
 pub use report::{comparison, quoted, report};
 pub use results::{Results, ResultsError, of_other_version};
 pub use survey::{Depth, ElementSurvey, Found, Survey};
-pub use table::folder::{COMPARISON_PAGE, REPORT_PAGE, VIEW_PAGE};
+pub use table::folder::{COMPARISON_LATEX, COMPARISON_PAGE, REPORT_LATEX, REPORT_PAGE, VIEW_PAGE, latex_figures};
 pub use table::sealed::{SealError, open, seal};
 pub use trouble::Trouble;
 pub use view::view;

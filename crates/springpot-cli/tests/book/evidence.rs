@@ -59,3 +59,25 @@ fn reference_values_have_a_source() {
     }
     assert!(found > 15, "{found}");
 }
+
+/// Every work that the paper cites is in its bibliography, and there as Literature has it.
+#[test]
+fn the_paper_cites_what_literature_lists() {
+    let read = |name: &str| fs::read_to_string(format!("{ROOT}/{name}")).unwrap();
+    let (paper, works, literature) = (read("paper/paper.md"), read("paper/paper.bib"), read("docs/LITERATURE.md"));
+    let keys: Vec<&str> = works.split("\n@").filter_map(|work| work.split(['{', ',']).nth(1)).collect();
+    assert!(keys.len() >= 10);
+    for key in &keys {
+        assert!(paper.contains(&format!("@{key}")), "nothing cites {key}");
+    }
+    for cited in paper.split('@').skip(1) {
+        let key: String = cited.chars().take_while(|c| c.is_ascii_alphanumeric()).collect();
+        assert!(keys.contains(&&*key), "{key} is not in paper.bib");
+    }
+    for title in works.lines().filter_map(|line| line.trim().strip_prefix("title")) {
+        let plain: String = title.chars().filter(|c| !"={},".contains(*c)).collect();
+        // Formulas are written otherwise.
+        let words = plain.split('$').next().unwrap().trim();
+        assert!(literature.contains(words), "Literature has no {words:?}");
+    }
+}

@@ -158,3 +158,22 @@ fn broken_links_are_found() {
     }
     assert_eq!(said("README.md", "docs/SUMMARY.md#summary"), "");
 }
+
+/// A package index shows it beside no repository.
+#[test]
+fn the_readme_of_the_package_reads_anywhere() {
+    let page = Page::open("crates/springpot-py/README.md");
+    let near: Vec<&str> =
+        page.links.iter().map(|link| &*link.target).filter(|target| !target.starts_with("https://")).collect();
+    assert!(near.is_empty(), "{near:?}");
+    // The wheel carries the licences of what is in it.
+    for (own, of) in [
+        ("LICENSE-MIT", "LICENSE-MIT"),
+        ("LICENSE-APACHE", "LICENSE-APACHE"),
+        ("LICENSE-DejaVu.txt", "crates/springpot-report/fonts/LICENSE-DejaVu.txt"),
+        ("LICENSE-three.txt", "crates/springpot-report/assets/THREE-LICENSE.txt"),
+    ] {
+        let read = |file: String| fs::read_to_string(&file).unwrap_or_else(|error| panic!("{file}: {error}"));
+        assert_eq!(read(format!("{ROOT}/crates/springpot-py/licenses/{own}")), read(format!("{ROOT}/{of}")), "{own}");
+    }
+}

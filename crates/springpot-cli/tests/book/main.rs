@@ -88,6 +88,7 @@ pages! {
     events_theory: "theory/events.md";
     commands: "COMMANDS.md";
     python_package: "reference/python.md";
+    python_members: "reference/api.md";
     robots: "ROBOTS.md";
     notation: "NOTATION.md";
     validation: "VALIDATION.md";

@@ -24,6 +24,7 @@ mod init;
 #[cfg(unix)]
 mod interrupted;
 mod joints;
+mod latex;
 mod laws;
 mod looks;
 mod manual;

@@ -1,6 +1,7 @@
 //! The page that says what a run was and what came of it, to be read and printed.
 
-use super::{MARK, math};
+use super::MARK;
+use crate::formula::mathml;
 use crate::scene::LawText;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -106,6 +107,18 @@ pub struct Figure {
     /// The picture.
     #[serde(rename = "data", serialize_with = "encoded")]
     pub bytes: Vec<u8>,
+    /// The same for paper, where it is there.
+    #[serde(skip)]
+    pub printed: Option<Printed>,
+}
+
+/// A picture in a format that LaTeX takes.
+#[derive(Debug, Clone)]
+pub struct Printed {
+    /// What its file's name ends with: pdf or png.
+    pub ending: &'static str,
+    /// The picture.
+    pub bytes: Vec<u8>,
 }
 
 /// An element, its law, where it is, and pictures of it.
@@ -146,7 +159,7 @@ impl Report {
                 None => escape_formatter(out, state, value),
             }
         });
-        environment.add_filter("math", |line: &str| Value::from_safe_string(math::html(&cleaned(line))));
+        environment.add_filter("math", |line: &str| Value::from_safe_string(mathml(&cleaned(line))));
         environment.add_template(NAME, TEMPLATE).expect("the template is sound");
         let template = environment.get_template(NAME).expect("it was added above");
         let mark = Value::from_safe_string(MARK.to_owned());
@@ -155,7 +168,7 @@ impl Report {
 }
 
 /// The text with what nobody would see made visible.
-fn cleaned(text: &str) -> String {
+pub(super) fn cleaned(text: &str) -> String {
     text.replace(is_unseen, "\u{fffd}")
 }
 
@@ -199,6 +212,7 @@ mod tests {
             file: Some(bad.to_owned()),
             media: "image/svg+xml".to_owned(),
             bytes: bad.as_bytes().to_vec(),
+            printed: Some(Printed { ending: "pdf", bytes: Vec::new() }),
         };
         let blocks = vec![
             Block::Text(bad.to_owned()),
@@ -224,6 +238,9 @@ mod tests {
             version: bad.to_owned(),
             sections: vec![section],
         };
+        let tex = report.latex("figures").text.replace("\\{", "").replace("\\}", "");
+        assert_eq!(tex.matches('{').count(), tex.matches('}').count(), "{tex}");
+        assert!(!tex.contains(is_unseen) && tex.contains("figures/figure-2.pdf"), "{tex}");
         let html = report.html();
         assert!(!html.contains("alert(1)<") && !html.contains("<script") && !html.contains("<img src=x"), "{html}");
         assert!(html.contains(MARK));

@@ -4,7 +4,7 @@ use super::swept;
 use crate::panels::{Curves, DrawnCase, DrawnLook, FigureColumn};
 use crate::results::{Results, ResultsError};
 use crate::sweep::KeptCurve;
-use springpot_report::page::Figure;
+use springpot_report::page::{Figure, Printed};
 
 /// Cases that are drawn of a sweep.
 const MOST_CASES: usize = 8;
@@ -25,7 +25,14 @@ pub(super) struct Asked {
 
 /// The pictures.
 pub(super) struct Drawn {
-    figures: Vec<(String, Vec<u8>)>,
+    figures: Vec<(String, Picture)>,
+}
+
+/// A picture in the formats of pages and of paper.
+#[derive(Clone)]
+pub(super) struct Picture {
+    svg: String,
+    pdf: Vec<u8>,
 }
 
 /// Curves of one result for the pictures: by case that is drawn, by picture, by ordinate.
@@ -54,13 +61,14 @@ impl Drawn {
     /// The pictures of these titles.
     pub(super) fn titled(&self, titles: &[&str]) -> Vec<Figure> {
         let found = self.figures.iter().filter(|(title, _)| titles.contains(&&**title));
-        found.map(|(title, svg)| figure(title.clone(), svg.clone())).collect()
+        found.map(|(title, picture)| figure(title.clone(), picture.clone())).collect()
     }
 }
 
 /// A picture that is in no file.
-pub(super) fn figure(title: String, svg: Vec<u8>) -> Figure {
-    Figure { title, file: None, media: "image/svg+xml".to_owned(), bytes: svg }
+pub(super) fn figure(title: String, Picture { svg, pdf }: Picture) -> Figure {
+    let printed = Some(Printed { ending: "pdf", bytes: pdf });
+    Figure { title, file: None, media: "image/svg+xml".to_owned(), bytes: svg.into_bytes(), printed }
 }
 
 /// The picture of these cases; `None` where there is nothing to draw.
@@ -68,7 +76,7 @@ pub(super) fn picture<'p>(
     results: &Results,
     asked: &Asked,
     cases: impl Iterator<Item = DrawnCase<'p>>,
-) -> Option<Vec<u8>> {
+) -> Option<Picture> {
     let cases: Vec<DrawnCase<'_>> = cases.collect();
     if cases.iter().all(|case| case.points.iter().all(|points| points.is_empty())) {
         return None;
@@ -82,7 +90,7 @@ pub(super) fn picture<'p>(
     // Many curves need room for their names.
     look.asked.size = (y.len() == 1).then_some(SIZE);
     let plot = Curves { title: None, x: &x, y: &y, look: &look, is_marked: false, measured: &[] }.plot(cases);
-    plot.render().ok().map(|rendered| rendered.svg.into_bytes())
+    plot.draw().ok().map(|drawn| Picture { svg: drawn.svg(), pdf: drawn.pdf() })
 }
 
 impl Read {

@@ -6,7 +6,7 @@ use crate::labels;
 use crate::numbers::short;
 use crate::results::Results;
 use serde_json::Value;
-use springpot_report::page::{Block, Figure, Table};
+use springpot_report::page::{Block, Figure, Printed, Table};
 use std::path::Path;
 
 /// Figures of a scenario, each in the first format that a page can hold.
@@ -20,10 +20,13 @@ pub(super) fn figures(results: &Results) -> Vec<Block> {
             let file = format!("figures/{name}.{ending}");
             results.record.files.contains(&file).then_some(file)
         };
+        let read = |ending: &'static str| Some(Printed { ending, bytes: results.file(&of(ending)?)? });
+        let printed = read("pdf").or_else(|| read("png"));
         let shown = [("svg", "image/svg+xml"), ("png", "image/png")].into_iter().find_map(|(ending, media)| {
             let file = of(ending)?;
             let bytes = results.file(&file)?;
-            Some(Figure { title: title.clone(), file: Some(file), media: media.to_owned(), bytes })
+            let (title, printed) = (title.clone(), printed.clone());
+            Some(Figure { title, file: Some(file), media: media.to_owned(), bytes, printed })
         });
         // A page shows no PDF; it says where it is.
         let named = || {
@@ -32,6 +35,7 @@ pub(super) fn figures(results: &Results) -> Vec<Block> {
                 file: Some(file),
                 media: String::new(),
                 bytes: Vec::new(),
+                printed: printed.clone(),
             })
         };
         figures.extend(shown.or_else(named));

@@ -11,7 +11,7 @@ pub(crate) use lock::is_held;
 pub(crate) use owned::{
     CASE, EVENTS, GRADIENT, HEAD, JOURNAL, METRICS, PART, RANKING, RUNNING, UNFINISHED, checkpoint_folder,
 };
-pub use owned::{COMPARISON_PAGE, REPORT_PAGE, VIEW_PAGE};
+pub use owned::{COMPARISON_LATEX, COMPARISON_PAGE, REPORT_LATEX, REPORT_PAGE, VIEW_PAGE, latex_figures};
 
 use super::disk::{Disk, DiskFile, Entry};
 use super::format::{self, Format};

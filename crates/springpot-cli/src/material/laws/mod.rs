@@ -2,6 +2,7 @@
 
 mod columns;
 mod figure;
+mod latex;
 mod measured;
 mod names;
 mod page;
@@ -73,6 +74,8 @@ pub(crate) fn laws(options: &LawsOptions, catalog: &Catalog) -> Ending {
                 return Ending::Refused;
             }
         },
+        (None, Some(law)) if options.latex => latex::one(law),
+        (None, None) if options.latex => latex::all(catalog),
         (None, Some(law)) if options.json => pretty(&page::json(law)),
         (None, Some(law)) => page::text(law),
         (None, None) if options.json => pretty(&catalog.entries().iter().map(|law| page::json(law)).collect()),

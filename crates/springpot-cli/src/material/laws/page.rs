@@ -185,11 +185,11 @@ fn usual(unit: &str, range: Range) -> String {
     format!("\"{written}\"")
 }
 
-fn unit_or_one(unit: &str) -> &str {
+pub(super) fn unit_or_one(unit: &str) -> &str {
     if unit.is_empty() { "1" } else { unit }
 }
 
-fn interval(range: Range) -> String {
+pub(super) fn interval(range: Range) -> String {
     match (range.low > f64::MIN, range.high < f64::MAX) {
         (true, true) => format!("{} … {}", range.low, range.high),
         (true, false) if range.low == f64::MIN_POSITIVE => "> 0".to_owned(),

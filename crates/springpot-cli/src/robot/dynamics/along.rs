@@ -1,6 +1,6 @@
 //! `springpot dynamics SCENARIO --at TIME`: the equations of motion term by term.
 
-use super::terms;
+use super::{latex, terms};
 use crate::arguments::DynamicsOptions;
 use crate::robot::{Refused, is_scenario, refuse_urdf_flags};
 use crate::scenario::swept::in_case;
@@ -41,9 +41,11 @@ pub(super) fn at(options: &DynamicsOptions, catalog: &Catalog, at: &str) -> Resu
     diagnostic::robot_warnings(&cases);
     match system.equation(&plan.settings, t) {
         Ok(equation) => {
-            let text = match options.json {
-                true => json(&cases, index, &system, &equation),
-                false => terms::text(plan.title.as_deref(), &cases.name(index), &system, &equation),
+            let (title, case) = (plan.title.as_deref(), cases.name(index));
+            let text = match (options.json, options.latex) {
+                (true, _) => json(&cases, index, &system, &equation),
+                (_, true) => latex::latex(title, &case, &system, &equation),
+                _ => terms::text(title, &case, &system, &equation),
             };
             Ok(printed(terminal::try_print(&text)))
         }

@@ -3,6 +3,7 @@
 mod along;
 mod answer;
 mod json_text;
+mod latex;
 mod order;
 mod states;
 mod terms;

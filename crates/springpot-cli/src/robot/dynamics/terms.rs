@@ -9,12 +9,12 @@ use springpot::system::System;
 use springpot_run::numbers::{brief, rough, short};
 
 /// Most velocities for which a_ab, and Γ_ab,c, are printed.
-const MOST_WITH_MATRIX: usize = 8;
-const MOST_WITH_CHRISTOFFEL: usize = 6;
+pub(super) const MOST_WITH_MATRIX: usize = 8;
+pub(super) const MOST_WITH_CHRISTOFFEL: usize = 6;
 /// Longer names than these stand in the first table only, with a number for the others.
 const SHORT_NAME: usize = 6;
 /// What is smaller than this share of its table is rounding, and is shown as 0.
-const ROUNDING: f64 = 1e-14;
+pub(super) const ROUNDING: f64 = 1e-14;
 /// Stands where a number is not known.
 const UNKNOWN: &str = "-";
 
@@ -110,7 +110,7 @@ fn shown(value: f64, largest: f64) -> String {
     }
 }
 
-fn largest(numbers: &[f64]) -> f64 {
+pub(super) fn largest(numbers: &[f64]) -> f64 {
     numbers.iter().fold(0.0, |largest, x| x.abs().max(largest))
 }
 
@@ -218,23 +218,27 @@ fn sum(system: &System, equation: &Equation, joints: &[String], page: &Page) -> 
 
 /// How well the equation closes.
 fn closing(equation: &Equation) -> String {
-    let residual = largest(&equation.residual());
-    let names: Vec<&str> = (equation.elements.iter())
-        .filter(|element| !element.force.is_finite())
-        .map(|element| element.name.as_str())
-        .collect();
+    let velocity = if equation.christoffel.is_some() { "Γ_ab,c q\u{307}_a q\u{307}_b" } else { "C q\u{307}" };
+    match closes(equation) {
+        Ok(0.0) => format!("a_ac q\u{308}_a + {velocity} - ΣQ - tau = 0 exactly"),
+        Ok(share) => {
+            format!("a_ac q\u{308}_a + {velocity} - ΣQ - tau = 0 to {} of the largest term", rough(share))
+        }
+        Err(unknown) => unknown,
+    }
+}
+
+/// The largest residual as a share of the largest term, or why it is not known.
+pub(super) fn closes(equation: &Equation) -> Result<f64, String> {
+    let infinite = equation.elements.iter().filter(|element| !element.force.is_finite());
+    let names: Vec<&str> = infinite.map(|element| element.name.as_str()).collect();
     if !names.is_empty() {
-        return format!(
+        return Err(format!(
             "the force of {} is infinite at t = 0, after a Riemann-Liouville start from x(0) other than 0, so that the \
              equation is not known",
             names.join(", ")
-        );
+        ));
     }
-    let velocity = if equation.christoffel.is_some() { "Γ_ab,c q\u{307}_a q\u{307}_b" } else { "C q\u{307}" };
-    let share = if residual == 0.0 {
-        "exactly".to_owned()
-    } else {
-        format!("to {} of the largest term", rough(residual / equation.largest_term()))
-    };
-    format!("a_ac q\u{308}_a + {velocity} - ΣQ - tau = 0 {share}")
+    let residual = largest(&equation.residual());
+    Ok(if residual == 0.0 { 0.0 } else { residual / equation.largest_term() })
 }

@@ -3,6 +3,7 @@
 use crate::table::disk::{Disk, Entry};
 use crate::table::sealed;
 use serde::Deserialize;
+use springpot_report::latex;
 use springpot_report::page::MARK;
 use std::io::{self, Read as _, Write as _};
 use std::path::{Component, Path};
@@ -13,6 +14,15 @@ pub const VIEW_PAGE: &str = "view.html";
 pub const REPORT_PAGE: &str = "report.html";
 /// As [`VIEW_PAGE`], of what two results have to do with each other.
 pub const COMPARISON_PAGE: &str = "comparison.html";
+/// [`REPORT_PAGE`] and [`COMPARISON_PAGE`] as LaTeX documents.
+pub const REPORT_LATEX: &str = "report.tex";
+/// As [`REPORT_LATEX`].
+pub const COMPARISON_LATEX: &str = "comparison.tex";
+
+/// The folder of the pictures of a LaTeX document `stem`.tex, beside it.
+pub fn latex_figures(stem: &str) -> String {
+    format!("{stem}-figures")
+}
 
 /// The rows while they are written, and at the end.
 pub(crate) const PART: &str = "results.csv.part";
@@ -71,19 +81,45 @@ struct Versions {
     springpot: String,
 }
 
-/// Takes away the pages of earlier results: those that bear the mark of ours.
+/// Takes away the pages of earlier results, and documents with their pictures: those that bear the mark of ours.
 pub(super) fn remove_pages(disk: &Disk, folder: &Path) -> io::Result<()> {
-    for name in [VIEW_PAGE, REPORT_PAGE, COMPARISON_PAGE] {
+    let remove = |name: &str, mark: &str| -> io::Result<bool> {
         let path = folder.join(name);
-        if matches!(disk.look(&path)?, Some(Entry::File(_))) {
-            let mut beginning = Vec::new();
-            disk.open(&path)?.take(PAGE_HEAD).read_to_end(&mut beginning)?;
-            if String::from_utf8_lossy(&beginning).contains(MARK) {
-                disk.remove(&path)?;
+        if !matches!(disk.look(&path)?, Some(Entry::File(_))) {
+            return Ok(false);
+        }
+        let mut beginning = Vec::new();
+        disk.open(&path)?.take(PAGE_HEAD).read_to_end(&mut beginning)?;
+        let is_ours = String::from_utf8_lossy(&beginning).contains(mark);
+        if is_ours {
+            disk.remove(&path)?;
+        }
+        Ok(is_ours)
+    };
+    for name in [VIEW_PAGE, REPORT_PAGE, COMPARISON_PAGE] {
+        remove(name, MARK)?;
+    }
+    for name in [REPORT_LATEX, COMPARISON_LATEX] {
+        if remove(name, latex::MARK)? {
+            let figures = folder.join(latex_figures(name.trim_end_matches(".tex")));
+            if disk.look(&figures)? != Some(Entry::Folder) {
+                continue;
             }
+            for name in disk.list(&figures)?.iter().filter(|name| is_picture(name)) {
+                disk.remove(&figures.join(name))?;
+            }
+            disk.remove_folder(&figures)?;
         }
     }
     Ok(())
+}
+
+/// Whether a file beside a document is one of its pictures, `figure-3.pdf`.
+fn is_picture(name: &str) -> bool {
+    let number = name.strip_prefix("figure-").and_then(|name| name.split_once('.'));
+    number.is_some_and(|(number, ending)| {
+        FIGURE_ENDINGS.contains(&ending) && !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit())
+    })
 }
 
 /// The record of the last run; `None` where there is none, or something else of that name.
