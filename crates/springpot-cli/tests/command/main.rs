@@ -25,6 +25,7 @@ mod init;
 mod interrupted;
 mod joints;
 mod laws;
+mod linearise;
 mod looks;
 mod manual;
 mod master;
