@@ -159,15 +159,33 @@ Examples:
   springpot modes arm.toml --at 0.5 --set element.strut.alpha=0.3
   springpot modes arm.toml --out eigenvalues.svg
   springpot modes arm.toml --frequency-response tau.q2 strut.force --to 20
+  springpot modes arm.toml --sweep motion.controller.kp=10:100:10 --out locus.svg
+  springpot modes arm.toml --margins q2 --decibel --out loop.svg
 
 Linearises about the start, the configuration at a time, or the static equilibrium that the robot sinks into, and prints the \
 eigenvalues of M s^2 + D s + K(s) on the principal sheet. At rest springpots and dashpots carry no force. Torques and inputs have their values at \
 that time, sweeps their first ones; where the motion is prescribed, constant actuator forces hold it. \
-INPUT is tau.JOINT, ELEMENT.INPUT, or q.JOINT of a prescribed joint; COLUMN is one of the results. \
+Feedback and controllers that act at every time are in it, their references standing still; --open leaves them out, and sampled ones are \
+always left out. INPUT is tau.JOINT, ELEMENT.INPUT, q.JOINT of a prescribed joint, or reference.JOINT of a controller; COLUMN is one of the results. \
+--margins opens the loop at the torque of JOINT; its figure is FILE with gain and phase, and FILE-nyquist beside it. \
 Frequencies without a unit are in Hz.
 
 Exit codes: 0 done, 1 the motion does not come as far, 2 the input was refused, or there is no equilibrium.")]
     Modes(ModesOptions),
+    /// Linear model of first order about rest, memories as a few decays.
+    #[command(after_help = "\
+Examples:
+  springpot linearise arm.toml --input tau.q2 --output q.q2,strut.force --equilibrium --out arm.json
+  springpot linearise arm.toml --input reference.q1 --output q.q1 --band '0.1 Hz,50 Hz' --tolerance 1e-3 --out loop.npz
+
+x' = A x + B u, y = C x + D u of small motions about the start, the configuration at a time, or the static equilibrium. Every memory is a few \
+decays, as few as keep each channel's frequency response within the tolerance of the exact one, relative to it at every frequency of the band. \
+Feedback and controllers that act at every time are in it; --open leaves them out, and sampled ones are refused without it. \
+Inputs are those of modes --frequency-response, outputs the columns of the results but energies. \
+The .npz file has the keys of the .json file, with units along unit_names, about_t and about_q.
+
+Exit codes: 0 done, 1 the tolerance is out of reach, or the motion does not come as far, 2 the input was refused.")]
+    Linearise(LineariseOptions),
     /// Show the laws of elements, or find the parameters of one from a data sheet or a measurement.
     #[command(after_help = "\
 Examples:
@@ -750,19 +768,31 @@ pub(crate) struct ModesOptions {
     /// Time of the motion, in s or with a unit [default: the start]
     #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     pub(crate) at: Option<String>,
+    /// Leave feedback and controllers out
+    #[arg(long)]
+    pub(crate) open: bool,
     /// Answer of a column to sines of an input, over the frequency
-    #[arg(long, value_names = ["INPUT", "COLUMN"], num_args = 2)]
+    #[arg(long, value_names = ["INPUT", "COLUMN"], num_args = 2, group = "frequency")]
     pub(crate) frequency_response: Vec<String>,
+    /// Phase, gain and delay margins of the loop through a joint's torque
+    #[arg(long, value_name = "JOINT", group = "frequency", conflicts_with_all = ["frequency_response", "open"])]
+    pub(crate) margins: Option<String>,
+    /// Eigenvalues of every case: PATH=1,2,3 or PATH=from:to:count; may be given several times
+    #[arg(long = "sweep", value_name = "PATH=VALUES", conflicts_with_all = ["frequency_response", "margins"])]
+    pub(crate) sweeps: Vec<String>,
+    /// Gains of figures in dB
+    #[arg(long)]
+    pub(crate) decibel: bool,
     /// Lowest frequency
-    #[arg(long, value_name = "FREQUENCY", default_value = "0.1 Hz", requires = "frequency_response")]
+    #[arg(long, value_name = "FREQUENCY", default_value = "0.1 Hz", requires = "frequency")]
     #[arg(allow_hyphen_values = true)]
     pub(crate) from: String,
     /// Highest frequency
-    #[arg(long, value_name = "FREQUENCY", default_value = "100 Hz", requires = "frequency_response")]
+    #[arg(long, value_name = "FREQUENCY", default_value = "100 Hz", requires = "frequency")]
     #[arg(allow_hyphen_values = true)]
     pub(crate) to: String,
     /// Number of frequencies, evenly on a logarithmic scale
-    #[arg(long, value_name = "N", default_value_t = 301, requires = "frequency_response", allow_hyphen_values = true)]
+    #[arg(long, value_name = "N", default_value_t = 301, requires = "frequency", allow_hyphen_values = true)]
     pub(crate) points: usize,
     /// Override a value of the file, such as element.strut.alpha=0.5; PATH= takes the key out; may be given several times
     #[arg(long = "set", value_name = "PATH=VALUE")]
@@ -773,6 +803,40 @@ pub(crate) struct ModesOptions {
     /// Write FILE.csv, .json, .svg, .png or .pdf instead of printing
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct LineariseOptions {
+    /// Scenario file (TOML)
+    #[arg(value_name = "SCENARIO")]
+    pub(crate) file: PathBuf,
+    /// Inputs: tau.JOINT, ELEMENT.INPUT, q.JOINT of a prescribed joint, reference.JOINT of a controller
+    #[arg(long = "input", value_name = "NAME[,NAME…]", required = true, value_delimiter = ',')]
+    pub(crate) inputs: Vec<String>,
+    /// Outputs: columns of the results
+    #[arg(long = "output", value_name = "COLUMN[,COLUMN…]", required = true, value_delimiter = ',')]
+    pub(crate) outputs: Vec<String>,
+    /// Go to the static equilibrium first
+    #[arg(long)]
+    pub(crate) equilibrium: bool,
+    /// Time of the motion, in s or with a unit [default: the start]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
+    pub(crate) at: Option<String>,
+    /// Leave feedback and controllers out
+    #[arg(long)]
+    pub(crate) open: bool,
+    /// Frequencies between which it is exact
+    #[arg(long, value_name = "FROM,TO", default_value = "0.1 Hz,100 Hz", allow_hyphen_values = true)]
+    pub(crate) band: String,
+    /// Relative deviation that every channel may have
+    #[arg(long, value_name = "SHARE", default_value_t = 1e-4, allow_hyphen_values = true)]
+    pub(crate) tolerance: f64,
+    /// Override a value of the file, such as element.strut.alpha=0.5; PATH= takes the key out; may be given several times
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub(crate) overrides: Vec<String>,
+    /// File to write: .json, or .npz for NumPy
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: PathBuf,
 }
 
 #[derive(Debug, Args)]

@@ -167,6 +167,7 @@ fn command(catalog: &Catalog, disk: &Disk, arguments: &[OsString]) -> u8 {
         Command::Prony(options) => material::prony::prony(&options, catalog),
         Command::Modulus(options) => material::modulus::modulus(&options, catalog),
         Command::Modes(options) => robot::modes::modes(&options, catalog),
+        Command::Linearise(options) => robot::linearise::linearise(&options, catalog),
     };
     ending.into()
 }

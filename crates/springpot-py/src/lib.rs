@@ -10,6 +10,7 @@ mod fit;
 mod fractional;
 mod interrupt;
 mod law;
+mod linear;
 mod model;
 mod notebook;
 mod pickle;
@@ -28,6 +29,7 @@ fn _springpot(module: &Bound<'_, PyModule>) -> PyResult<()> {
     fit::register(module)?;
     fractional::register(module)?;
     law::register(module)?;
+    linear::register(module)?;
     model::register(module)?;
     quantity::register(module)?;
     run::register(module)?;

@@ -285,6 +285,16 @@ def fits(scratch: Path) -> None:
     print(problem.names, problem.units, problem.bounds, problem.residuals(problem.start), problem.jacobian(problem.start))
 
 
+def small_motions() -> None:
+    scenario = {"robot": {"body": [{"name": "b", "mass": 2, "joint": {"name": "x", "kind": "prismatic", "axis": [1, 0, 0]}}]},
+                "element": [{"name": "e", "joint": "x", "law": "kelvin-voigt", "parameters": {"k": 50, "c": 4}}],
+                "motion": {"kind": "forward"}, "time": {"end": 1, "output_step": 0.5}}
+    model: sp.LinearModel = sp.linearise(scenario, ["tau.x"], ["q.x"], band=("0.1 Hz", 10), tolerance=1e-3)
+    print(model.A, model.B, model.C, model.D, model.inputs, model.outputs, model.states, model.units, model.band, model.error, model.about)
+    answers: NDArray[np.complex128] = sp.frequency_response(scenario, "tau.x", "q.x", [0.1, 1.0], at=0, open=True)
+    print(answers, sp.modes(scenario, equilibrium=True)["eigenvalues"])
+
+
 def mistakes() -> None:
     warnings.simplefilter("ignore", category=sp.SpringpotWarning)
     try:
@@ -308,6 +318,7 @@ materials()
 master_curves()
 engines()
 calculus()
+small_motions()
 with tempfile.TemporaryDirectory() as scratch:
     runs(Path(scratch))
     fits(Path(scratch))

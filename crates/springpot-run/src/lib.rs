@@ -11,6 +11,7 @@
 //! | [`figures`] | figures from the curves that a run kept, or from any others |
 //! | [`metrics`] | numbers that say how good a run is, at its end and from its results |
 //! | [`parts`] | a law as its parts: drawn, and as formulas |
+//! | [`linear`] | small motions by name: eigenvalues, linear models and their files |
 //! | [`numbers`] | numbers and counts as a reader wants them |
 //! | [`design`] | parameters moved until a metric is as small as constraints let it be |
 //! | [`trial`] | scenarios whose parameters take other values |
@@ -42,6 +43,7 @@ mod finish;
 pub mod fit;
 mod follow;
 pub mod labels;
+pub mod linear;
 mod meshes;
 pub mod metrics;
 pub mod numbers;

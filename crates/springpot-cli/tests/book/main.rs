@@ -45,6 +45,7 @@ pages! {
     how_to_fit: "how-to/fit.md";
     own_law: "how-to/own-law.md";
     own_controller: "how-to/own-controller.md";
+    linear: "how-to/linear.md";
     look: "how-to/look.md";
     gradients: "how-to/gradients.md";
     papers: "how-to/papers.md";

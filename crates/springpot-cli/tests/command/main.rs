@@ -26,6 +26,7 @@ mod interrupted;
 mod joints;
 mod latex;
 mod laws;
+mod linearise;
 mod looks;
 mod manual;
 mod master;

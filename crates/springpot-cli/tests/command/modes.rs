@@ -136,3 +136,84 @@ fn what_it_cannot_do_is_refused() {
         words.iter().for_each(|words| assert!(said.contains(words), "{arguments:?}: {words:?}: {}", refused.stderr));
     }
 }
+
+const CONTROLLER: &str =
+    "[motion.controller]\nkind = \"pid\"\nkp = 20\nki = 30\nkd = 4\nreference = { kind = \"joints\", z = 0.1 }";
+
+#[test]
+fn closed_loops_are_in_and_left_out_when_asked() {
+    let place = mass(KELVIN_VOIGT, CONTROLLER);
+    let eigenvalues = |more: &[&str]| {
+        let done = place.done(&[&["modes", "arm.toml", "--json"], more].concat());
+        let json: Value = serde_json::from_str(&done.stdout).unwrap();
+        let modes = json["modes"].as_array().unwrap().clone();
+        (
+            modes.iter().map(|mode| [mode["re"].as_f64().unwrap(), mode["im"].as_f64().unwrap()]).collect::<Vec<_>>(),
+            done.stderr,
+        )
+    };
+    // 2 s³ + 8 s² + 70 s + 30 = 0.
+    let (closed, said) = eigenvalues(&[]);
+    assert!(closed.len() == 2 && said.is_empty(), "{closed:?} {said}");
+    let s = closed[0][0];
+    assert!((2.0 * s.powi(3) + 8.0 * s * s + 70.0 * s + 30.0).abs() < 1e-12, "{s}");
+    let (open, _) = eigenvalues(&["--open"]);
+    assert!(
+        open.len() == 1 && (open[0][0] + 1.0).abs() < 1e-14 && (open[0][1] - 24.0f64.sqrt()).abs() < 1e-13,
+        "{open:?}"
+    );
+    let rest = place.done(&["modes", "arm.toml", "--equilibrium"]).stdout;
+    assert!(rest.contains("z = 0.1"), "{rest}");
+    let sampled = mass(KELVIN_VOIGT, &format!("{CONTROLLER}\nsample = \"10 ms\""));
+    let told = sampled.done(&["modes", "arm.toml"]).stderr;
+    assert!(told.contains("is left out: these are the modes of the robot alone"), "{told}");
+    let reference =
+        place.done(&["modes", "arm.toml", "--frequency-response", "reference.z", "q.z", "--points", "2", "--json"]);
+    let json: Value = serde_json::from_str(&reference.stdout).unwrap();
+    assert_eq!(json["unit"], "m per m");
+}
+
+#[test]
+fn sweeps_give_every_case() {
+    let place = mass(KELVIN_VOIGT, CONTROLLER);
+    let sweep = ["modes", "arm.toml", "--sweep", "motion.controller.kp=10,40"];
+    let with = |more: &[&str]| place.done(&[&sweep[..], more].concat());
+    with(&["--out", "m.csv"]);
+    let text = place.read("m.csv");
+    assert!(text.starts_with("motion.controller.kp"), "{text}");
+    let rows = Csv::new(&text);
+    assert_eq!(rows.numbers("mode"), [1.0, 2.0, 1.0, 2.0]);
+    let json: Value = serde_json::from_str(&with(&["--json"]).stdout).unwrap();
+    assert_eq!(json["cases"][1]["set"]["motion.controller.kp"], 40.0);
+    assert_eq!(json["cases"][1]["modes"].as_array().unwrap().len(), 2);
+    with(&["--out", "m.svg"]);
+    assert!(place.read("m.svg").contains("Root locus"));
+    assert!(with(&[]).stdout.contains("mode"));
+}
+
+#[test]
+fn margins_are_told_and_drawn() {
+    let place = mass(
+        "law = \"spring\"\nparameters = { k = 1e-9 }",
+        "[motion.controller]\nkind = \"pid\"\nkp = 50\nki = 0\nkd = 8\nreference = { kind = \"joints\", z = 0 }",
+    );
+    let json: Value =
+        serde_json::from_str(&place.done(&["modes", "arm.toml", "--margins", "z", "--json"]).stdout).unwrap();
+    let margins = &json["margins"];
+    let omega = ((64.0 + (4096.0f64 + 4.0 * 4.0 * 2500.0).sqrt()) / 8.0).sqrt();
+    assert!((margins["phase_margin_frequency"].as_f64().unwrap() * TAU / omega - 1.0).abs() < 1e-8, "{json}");
+    assert!(
+        (margins["phase_margin"].as_f64().unwrap() - (8.0 * omega).atan2(50.0).to_degrees()).abs() < 1e-7,
+        "{json}"
+    );
+    assert!(margins["gain_margin"].is_null() && json["unstable"] == false, "{json}");
+    place.done(&["modes", "arm.toml", "--margins", "z", "--decibel", "--out", "l.svg"]);
+    assert!(place.read("l.svg").contains("phase margin") && place.read("l-nyquist.svg").contains("Im L"));
+    let page = place.done(&["modes", "arm.toml", "--margins", "z"]).stdout;
+    assert!(
+        page.contains("phase") && page.contains("deg at") && page.lines().all(|line| line.chars().count() <= 80),
+        "{page}"
+    );
+    let refused = place.springpot(&["modes", "arm.toml", "--margins", "y"]);
+    assert!(refused.code == Some(2) && refused.said().contains("there is no such joint"), "{}", refused.stderr);
+}

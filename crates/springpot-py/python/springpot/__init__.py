@@ -25,6 +25,7 @@ from ._design import Design, DesignedParameter, design
 from ._fit import Fit, Parameter, Problem, fit, problem
 from ._gradient import gradient
 from ._law import Master, datasheet, law, laws, master, network, prony
+from ._linear import LinearModel, frequency_response, linearise, modes
 from ._regressor import element_regressor
 from ._run import Run, run
 from ._springpot import Bank, Law, Model, Prony, Simulation, SimulationState, Snapshot, __version__
@@ -39,6 +40,7 @@ __all__ = [
     "Figure",
     "Fit",
     "Law",
+    "LinearModel",
     "Master",
     "Model",
     "ModelError",
@@ -59,10 +61,13 @@ __all__ = [
     "fit",
     "element_regressor",
     "fractional",
+    "frequency_response",
     "gradient",
     "law",
     "laws",
+    "linearise",
     "master",
+    "modes",
     "network",
     "problem",
     "prony",

@@ -124,6 +124,24 @@ class Residuals:
     def residuals(self, p: ArrayLike) -> Array: ...
     def jacobian(self, p: ArrayLike) -> Array: ...
 
+_Place = tuple[float | None, bool, bool]
+
+def linear_model(
+    scenario: Scenario,
+    channels: tuple[Sequence[str], Sequence[str]],
+    place: _Place,
+    band: Sequence[float],
+    tolerance: float,
+    set: Mapping[str, Any] | None = None,
+) -> str: ...
+def linear_modes(scenario: Scenario, place: _Place, set: Mapping[str, Any] | None = None) -> str: ...
+def linear_response(
+    scenario: Scenario,
+    names: tuple[str, str],
+    frequencies: Sequence[float],
+    place: _Place,
+    set: Mapping[str, Any] | None = None,
+) -> str: ...
 def fit_scenario(scenario: Scenario, set: Mapping[str, Any] | None = None) -> Fitted: ...
 def master(
     frequency: ArrayLike,

@@ -3,7 +3,7 @@
 pub mod disk;
 pub mod folder;
 mod format;
-mod npz;
+pub(crate) mod npz;
 pub mod number;
 pub mod ordered;
 mod parquet;

@@ -58,6 +58,56 @@ pub(super) fn write<W: Write + Seek>(rows: &Rows<'_>, out: &mut W) -> io::Result
     finish(&arrays, at, out)
 }
 
+/// Whole arrays of one archive.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Whole {
+    /// Numbers in rows, and how many rows and columns they are.
+    Matrix(Vec<f64>, [usize; 2]),
+    /// Numbers.
+    Numbers(Vec<f64>),
+    /// Texts.
+    Texts(Vec<String>),
+}
+
+/// Writes whole arrays by their names.
+///
+/// # Errors
+/// The file's.
+pub(crate) fn write_whole<W: Write + Seek>(arrays: &[(&str, Whole)], out: &mut W) -> io::Result<()> {
+    let (mut written, mut at) = (Vec::with_capacity(arrays.len()), 0);
+    for (name, whole) in arrays {
+        let (kind, shape, fields) = match whole {
+            Whole::Matrix(values, [rows, columns]) => (Kind::Number, format!("{rows}, {columns}"), numbers(values)),
+            Whole::Numbers(values) => (Kind::Number, format!("{},", values.len()), numbers(values)),
+            Whole::Texts(texts) => {
+                let longest = texts.iter().map(|text| text.chars().count()).max().unwrap_or(0);
+                (
+                    Kind::Text(longest),
+                    format!("{},", texts.len()),
+                    texts.iter().map(|text| text.clone().into_bytes()).collect(),
+                )
+            }
+        };
+        let (descr, width) = match kind {
+            Kind::Number => ("<f8".to_owned(), 8),
+            Kind::Text(longest) => (format!("<U{}", longest.max(1)), 4 * longest.max(1) as u64),
+        };
+        let head = head_of_array(&descr, &shape);
+        let mut array = Array::begin_as(&format!("{name}.npy"), kind, head, fields.len() as u64 * width, at, out)?;
+        fields.iter().try_for_each(|field: &Vec<u8>| array.take(field))?;
+        array.write(out)?;
+        array.write_sum(out)?;
+        at = array.at + array.head_of_entry() + array.size;
+        written.push(array);
+    }
+    out.seek(SeekFrom::Start(at))?;
+    finish(&written, at, out)
+}
+
+fn numbers(values: &[f64]) -> Vec<Vec<u8>> {
+    values.iter().map(|value| value.to_string().into_bytes()).collect()
+}
+
 impl Array {
     /// Writes the heads of the entry and of the array; the sum of the bytes follows in the end.
     fn begin<W: Write + Seek>(name: &str, kind: Kind, rows: u64, at: u64, out: &mut W) -> io::Result<Self> {
@@ -65,8 +115,19 @@ impl Array {
             Kind::Number => ("<f8".to_owned(), 8),
             Kind::Text(longest) => (format!("<U{}", longest.max(1)), 4 * longest.max(1) as u64),
         };
-        let head = head_of_array(&descr, rows);
-        let size = head.len() as u64 + rows * width;
+        Self::begin_as(name, kind, head_of_array(&descr, &format!("{rows},")), rows * width, at, out)
+    }
+
+    /// The same with the array's own head and the bytes of its values.
+    fn begin_as<W: Write + Seek>(
+        name: &str,
+        kind: Kind,
+        head: Vec<u8>,
+        bytes: u64,
+        at: u64,
+        out: &mut W,
+    ) -> io::Result<Self> {
+        let size = head.len() as u64 + bytes;
         let name = name.as_bytes().to_vec();
         let mut array = Self { name, at, next: at, size, sum: crc32fast::Hasher::new(), gathered: Vec::new(), kind };
         out.seek(SeekFrom::Start(at))?;
@@ -130,10 +191,10 @@ impl Array {
     }
 }
 
-/// The head of an array of `rows` values, padded so that the values begin at a multiple of 64 bytes.
-fn head_of_array(descr: &str, rows: u64) -> Vec<u8> {
+/// The head of an array of a shape as Python writes it, padded so that the values begin at a multiple of 64 bytes.
+fn head_of_array(descr: &str, shape: &str) -> Vec<u8> {
     const LEAD: usize = 10;
-    let mut text = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': ({rows},), }}");
+    let mut text = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': ({shape}), }}");
     let length = (LEAD + text.len() + 1).next_multiple_of(64) - LEAD;
     text.extend(std::iter::repeat_n(' ', length - 1 - text.len()));
     text.push('\n');

@@ -101,7 +101,7 @@ impl ControllerVariation for PdGravity {
 
     fn add_by_aim(&self, at: &At, change: &Aim, _: &mut Scratch, tau: &mut [f64]) {
         for (k, tau) in tau.iter_mut().enumerate() {
-            let [error, rate] = change.moved(at.model, k);
+            let [error, rate] = change.moved(at, k);
             *tau += self.kp[k] * error + self.kd[k] * rate;
         }
     }
@@ -136,7 +136,7 @@ impl ControllerVariation for ComputedTorque {
     fn add_by_aim(&self, at: &At, change: &Aim, scratch: &mut Scratch, tau: &mut [f64]) {
         let mut wanted = change.a.clone();
         for (k, wanted) in wanted.iter_mut().enumerate() {
-            let [error, rate] = change.moved(at.model, k);
+            let [error, rate] = change.moved(at, k);
             *wanted += self.kp[k] * error + self.kd[k] * rate;
         }
         self.add_mass(at, &wanted, scratch, tau);
@@ -190,7 +190,7 @@ impl ControllerVariation for Pid {
 
     fn add_by_aim(&self, at: &At, change: &Aim, _: &mut Scratch, tau: &mut [f64]) {
         for (k, tau) in tau.iter_mut().enumerate() {
-            let [error, rate] = change.moved(at.model, k);
+            let [error, rate] = change.moved(at, k);
             *tau += self.kp[k] * error + if self.mu[k] == 1.0 { self.kd[k] * rate } else { 0.0 };
         }
     }
@@ -252,7 +252,10 @@ impl ControllerVariation for Impedance {
     }
 
     fn add_by_aim(&self, at: &At, change: &Aim, scratch: &mut Scratch, tau: &mut [f64]) {
-        let [position, velocity] = change.gripper.map(Vec3);
+        let [position, mut velocity] = change.gripper.map(Vec3);
+        if at.shaping.on_measurement {
+            velocity = Vec3::default();
+        }
         self.add_pull(at, position * self.kp + velocity * self.kd, scratch, tau);
     }
 
@@ -283,8 +286,10 @@ impl Impedance {
 }
 
 impl Aim {
-    /// What an aim that changes by this changes of coordinate and velocity `k`.
-    fn moved(&self, model: &Model, k: usize) -> [f64; 2] {
-        model.coordinate_of(k).map_or([0.0; 2], |place| [self.q[place], self.v[k]])
+    /// What an aim that changes by this changes of what the proportional and the derivative part of velocity `k` take.
+    fn moved(&self, at: &At, k: usize) -> [f64; 2] {
+        let takes_rate = at.shaping.filter.is_none() && !at.shaping.on_measurement;
+        let rate = if takes_rate { self.v[k] } else { 0.0 };
+        at.model.coordinate_of(k).map_or([0.0; 2], |place| [at.shaping.weight(k) * self.q[place], rate])
     }
 }

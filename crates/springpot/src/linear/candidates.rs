@@ -1,6 +1,6 @@
 //! Where zeros of the determinant may be: the eigenvalues of a system of first order in which exponentials stand for every s^alpha.
 
-use super::pencil::Pencil;
+use super::pencil::{OfSpringpot, Pencil};
 use crate::linalg::{Lu, eigenvalues};
 use num_complex::Complex64;
 use std::f64::consts::PI;
@@ -24,18 +24,18 @@ pub(super) fn candidates(pencil: &Pencil, step: f64) -> Option<Vec<Complex64>> {
     let step = step.max(each * pencil.springpots.len() as f64 / MOST);
     let count = if pencil.is_rational() { 0 } else { (each / step).ceil() as usize + 1 };
     let (mut damping, mut stiffness) = (pencil.damping.clone(), pencil.stiffness.clone());
-    // κ, λ and the stroke of every exponential.
-    let mut states: Vec<(f64, f64, &[f64])> = Vec::new();
-    for (term, b) in &pencil.springpots {
+    // κ, λ, what it pushes and the stroke of every exponential.
+    let mut states: Vec<(f64, f64, &[f64], &[f64])> = Vec::new();
+    for OfSpringpot { term, push, stroke } in &pencil.springpots {
         let (alpha, factor) = (term.order, term.coefficient * (PI * term.order).sin() / PI);
         let rate = |k: f64| SLOWEST * (k * step).exp();
         let spring = factor * rate(-0.5).powf(alpha) / alpha;
         let dashpot = factor * rate(count as f64 - 0.5).powf(alpha - 1.0) / (1.0 - alpha);
         let rates = (0..count).map(|k| rate(k as f64));
-        states.extend(rates.map(|rate| (factor * step * rate.powf(alpha), rate, &b[..])));
+        states.extend(rates.map(|rate| (factor * step * rate.powf(alpha), rate, &push[..], &stroke[..])));
         let of_states: f64 = states[states.len() - count..].iter().map(|state| state.0).sum();
-        for (r, row) in b.iter().enumerate() {
-            for (c, column) in b.iter().enumerate() {
+        for (r, row) in push.iter().enumerate() {
+            for (c, column) in stroke.iter().enumerate() {
                 stiffness[r * size + c] += (spring + of_states) * row * column;
                 damping[r * size + c] += dashpot * row * column;
             }
@@ -60,11 +60,11 @@ pub(super) fn candidates(pencil: &Pencil, step: f64) -> Option<Vec<Complex64>> {
                 b[row + place(c)] = damping[r * size + c];
             }
         }
-        for (k, (kappa, _, stroke)) in states.iter().enumerate() {
-            a[row + size + n + k] = kappa * stroke[r];
+        for (k, (kappa, _, push, _)) in states.iter().enumerate() {
+            a[row + size + n + k] = kappa * push[r];
         }
     }
-    for (k, (_, rate, stroke)) in states.iter().enumerate() {
+    for (k, (_, rate, _, stroke)) in states.iter().enumerate() {
         let row = (size + n + k) * whole;
         (0..size).for_each(|c| a[row + place(c)] = rate * stroke[c]);
         a[row + size + n + k] = -rate;

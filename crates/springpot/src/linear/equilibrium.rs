@@ -31,19 +31,32 @@ impl System {
     ///
     /// Implicit steps of M q' = −(g(q) − ΣQ − τ), as if it moved through honey, longer as less is left over: at last Newton's (C. T. Kelley,
     /// D. E. Keyes, SIAM J. Numer. Anal. 35 (1998) 508). Their matrices are positive definite, so that no upright pendulum is
-    /// found unless `start` is one.
+    /// found unless `start` is one. Feedback and controllers that act at every time are in it ([`System::linearised`]): a joint whose error is
+    /// integrated is where its reference is.
     ///
     /// # Errors
     /// [`LinearError`].
     pub fn equilibrium(&self, start: &[f64], t: f64) -> Result<Equilibrium, LinearError> {
-        let torques = self.torques_at(t)?.ok_or(LinearError::Given)?;
-        let (free, held) = (self.moved_by_forces(), self.strokes_at_start());
+        let (moved, held) = (self.moved_by_forces(), self.strokes_at_start());
+        let mut q = start.to_vec();
+        let mut statics = self.at_rest(&q, t, &held)?;
+        if statics.torques.is_none() {
+            return Err(LinearError::Given);
+        }
+        // What integrals hold is where they want it.
+        for (k, wanted) in statics.control.held.iter().enumerate() {
+            if let (Some(place), Some(wanted)) = (self.model.coordinate_of(k), wanted) {
+                q[place] = *wanted;
+            }
+        }
+        let free: Vec<usize> = moved.into_iter().filter(|&k| statics.control.held[k].is_none()).collect();
+        statics = self.at_rest(&q, t, &held)?;
         // Terms that vanish where it rests are measured by what they were on the way.
         let mut sizes = vec![0.0f64; free.len()];
         let mut left_over = |statics: &Statics| -> (Vec<f64>, f64) {
-            let each = free.iter().map(|&k| statics.holding[k] - torques[k]).collect::<Vec<_>>();
+            let each = free.iter().map(|&k| statics.missing(k)).collect::<Vec<_>>();
             for (size, &k) in sizes.iter_mut().zip(&free) {
-                *size = size.max(statics.sizes[k] + torques[k].abs());
+                *size = size.max(statics.size(k));
             }
             let floor = 1e-3 * sizes.iter().fold(0.0, |most: f64, size| most.max(*size));
             let share = |(residual, size): (&f64, &f64)| match *residual {
@@ -53,8 +66,6 @@ impl System {
             let largest = each.iter().zip(&sizes).map(share).fold(0.0, f64::max);
             (each, largest)
         };
-        let mut q = start.to_vec();
-        let mut statics = self.at_rest(&q, t, &held)?;
         let (mut residual, mut share) = left_over(&statics);
         let mut patience = f64::INFINITY;
         let (mut best, mut settled) = ((f64::INFINITY, q.clone()), 0);
@@ -93,14 +104,10 @@ impl System {
         let (n, count) = (self.model.nv(), free.len());
         let mut stiffness = vec![0.0; count * count];
         let mut mass = stiffness.clone();
+        let whole = statics.stiffness(self);
         for (r, &row) in free.iter().enumerate() {
             for (c, &column) in free.iter().enumerate() {
-                let of_elements: f64 = statics
-                    .elements
-                    .iter()
-                    .map(|e| e.law.stiffness.unwrap_or(0.0) * e.gradient[row] * e.gradient[column])
-                    .sum();
-                stiffness[r * count + c] = statics.slopes.d_q[row * n + column] + of_elements;
+                stiffness[r * count + c] = whole[row * n + column];
                 mass[r * count + c] = statics.slopes.d_a[row * n + column];
             }
         }

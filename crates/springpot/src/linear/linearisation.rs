@@ -1,5 +1,6 @@
 //! The equations of small motions about a configuration.
 
+use super::control::LinearControl;
 use super::error::LinearError;
 use super::statics::ElementAtRest;
 use crate::dynamics::point_jacobian;
@@ -8,7 +9,8 @@ use crate::model::{FrictionLaw, Model};
 use crate::system::System;
 use std::sync::Arc;
 
-/// A system about a configuration at rest: M s² + D s + K + Σ K_e*(s) g_e g_eᵀ. Matrices are nv × nv, row-major.
+/// A system about a configuration at rest: M s² + D s + K + Σ K_e*(s) g_e g_eᵀ, and what follows from the state beside it. Matrices are nv × nv,
+/// row-major.
 #[derive(Debug, Clone)]
 pub struct Linearisation {
     /// The configuration, nq values.
@@ -23,12 +25,18 @@ pub struct Linearisation {
     pub stiffness: Vec<f64>,
     /// The elements, in their order.
     pub elements: Vec<LinearElement>,
+    /// Feedback and controllers that act at every time.
+    pub control: LinearControl,
     /// The torque that is missing for an equilibrium on every velocity that forces move, else 0 (nv). Kinematics that are given have actuators
     /// that hold them.
     pub left_over: Vec<f64>,
     /// The joints that friction which sticks would hold; it has no part in what is linear.
     pub sticking: Vec<String>,
     pub(super) model: Arc<Model>,
+    /// The sum of the magnitudes of all that acts on every velocity (nv).
+    pub(super) sizes: Vec<f64>,
+    /// The velocities of joints of one degree that signals move.
+    pub(super) moved: Vec<usize>,
     /// ∂q/∂ξ of coordinates by tangent steps, nq × nv.
     pub(super) coordinates: Vec<f64>,
     /// Jacobian of the gripper, 3 × nv.
@@ -48,6 +56,8 @@ pub struct LinearElement {
     pub gradient: Vec<f64>,
     /// Its law under small motions.
     pub tangent: Tangent,
+    /// How many inputs it has.
+    pub(super) inputs: usize,
     /// An input that stretches it, and by how much per unit of it.
     pub(super) stretch: Option<(usize, f64)>,
     /// ∂²y/∂q_a∂q_b, nv × nv.
@@ -59,7 +69,8 @@ impl System {
     ///
     /// Forces that remain are those after endless rest: springpots and dashpots carry nothing. Where kinematics are given all joints are
     /// free and the actuators hold the configuration with constant forces; of forward dynamics, prescribed and locked joints stand still.
-    /// What follows from the state ([`System::control`]) is left out.
+    /// Of what follows from the state ([`System::control`]) all that acts at every time is in it, its reference as it is at `t` standing still;
+    /// where an integral acts it holds its joint with whatever that takes. What is sampled is left out.
     ///
     /// # Errors
     /// [`LinearError`].
@@ -71,9 +82,8 @@ impl System {
         let statics = self.at_rest(q, t, &self.strokes_at_start())?;
         let free = self.moved_by_forces();
         let mut left_over = vec![0.0; model.nv()];
-        if let Some(torques) = self.torques_at(t)? {
-            free.iter().for_each(|&k| left_over[k] = statics.holding[k] - torques[k]);
-        }
+        free.iter().for_each(|&k| left_over[k] = statics.missing(k));
+        let sizes = (0..model.nv()).map(|k| statics.size(k)).collect();
         let mut damping = vec![0.0; model.nv() * model.nv()];
         crate::equations::resistance::add_tangents(self, &vec![0.0; model.nv()], &mut damping);
         let sticks = |&j: &usize| model.friction()[j] > 0.0 && model.friction_laws()[j] == FrictionLaw::Sticking;
@@ -84,6 +94,7 @@ impl System {
             force: at.law.force,
             gradient: at.gradient,
             tangent: at.law.tangent,
+            inputs: element.entry.inputs.len(),
             stretch: element.law.as_heated().and_then(Heated::stretch),
             hessian: element.measure.hessian(model, &statics.kinematics),
         };
@@ -96,9 +107,12 @@ impl System {
             damping,
             stiffness: statics.slopes.d_q,
             elements,
+            control: statics.control.linear,
             left_over,
             sticking,
             model: self.model.clone(),
+            sizes,
+            moved: self.moved_by_signals(),
             coordinates: coordinate_slopes(model, q),
             gripper,
         })
@@ -110,8 +124,7 @@ impl Linearisation {
     pub fn largest_left_over(&self) -> Option<(String, f64, &'static str)> {
         let size = |k: &usize| self.left_over[*k].abs();
         let k = self.free.iter().copied().max_by(|a, b| size(a).total_cmp(&size(b)))?;
-        let pulls = self.elements.iter().map(|element| (element.gradient[k] * element.force).abs());
-        let terms: f64 = pulls.sum::<f64>() + size(&k);
+        let terms = self.sizes[k] + size(&k);
         let label = &self.model.v_labels()[k];
         let is_rounding = size(&k) <= 1e-9 * terms.max(1e-3);
         (!is_rounding).then(|| (label.name.clone(), size(&k), label.dimension.units().force))

@@ -36,19 +36,26 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod assembly;
 mod candidates;
+mod control;
 mod count;
 mod equilibrium;
 mod error;
 mod linearisation;
+mod margins;
+mod model;
 mod modes;
 mod pencil;
 mod refine;
 mod response;
 mod statics;
 
+pub use control::{LinearAim, LinearControl, LinearInput};
 pub use equilibrium::Equilibrium;
 pub use error::LinearError;
 pub use linearisation::{LinearElement, Linearisation};
+pub use margins::{LoopGain, Margins};
+pub use model::{LinearModel, LineariseError, ModelOrder, State, StateKind, StateOwner, linearise};
 pub use modes::{Mode, Modes, ModesError};
 pub use response::{Excitation, NoResponse};

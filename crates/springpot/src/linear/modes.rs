@@ -1,6 +1,7 @@
 //! Eigenvalues of small motions.
 
 use super::candidates::candidates;
+use super::control::Holding;
 use super::count::{BESIDE, count};
 use super::linearisation::Linearisation;
 use super::pencil::Pencil;
@@ -93,7 +94,8 @@ impl Modes {
 }
 
 impl Linearisation {
-    /// All eigenvalues of M s² + D s + K + Σ K_e*(s) g gᵀ with |arg s| < π, and those on the negative axis that no broken power reaches.
+    /// All eigenvalues of M s² + D s + K + Σ K_e*(s) g gᵀ, of the closed loop where something follows from the state, with |arg s| < π, and those
+    /// on the negative axis that no broken power reaches.
     ///
     /// With exponentials in place of every s^alpha they are eigenvalues of a matrix; from these each is refined to rounding, and their number
     /// is compared with the turns of the determinant's phase around the cut plane.
@@ -132,24 +134,33 @@ impl Linearisation {
 
     /// Independent motions without any stiffness.
     fn free_motions(&self, pencil: &Pencil) -> usize {
-        let n = pencil.free;
-        let relaxed: Vec<f64> = self.elements.iter().map(|element| element.tangent.relaxed()).collect();
+        let held = self.elements.iter().map(|element| Holding {
+            gradient: &element.gradient,
+            hessian: element.hessian.clone(),
+            force: element.force,
+            stiffness: element.tangent.relaxed(),
+            tangent: &element.tangent,
+            stretch: element.stretch,
+        });
+        let whole = self.control.static_stiffness(self.stiffness.clone(), &held.collect::<Vec<_>>());
+        // What an integral holds does not move.
+        let left: Vec<usize> = (0..pencil.free).filter(|&r| !self.control.integrates(self.free[r])).collect();
+        let n = left.len();
+        let entry = |(r, c): (usize, usize)| {
+            let scales = pencil.scales[r] * pencil.scales[c] / (pencil.omega * pencil.omega);
+            whole[self.free[r] * self.left_over.len() + self.free[c]] * scales
+        };
+        let pairs = left.iter().flat_map(|&r| left.iter().map(move |&c| (r, c)));
+        let stiffness: Vec<f64> = pairs.map(entry).collect();
         let still = Pencil {
             size: n,
+            free: n,
             mass: vec![0.0; n * n],
             damping: vec![0.0; n * n],
-            stiffness: (0..n * n)
-                .map(|i| {
-                    let [r, c] = [i / n, i % n];
-                    let [row, column] = [r, c].map(|k| self.free[k]);
-                    let pairs = self.elements.iter().zip(&relaxed);
-                    let of_elements: f64 = pairs.map(|(e, k)| k * e.gradient[row] * e.gradient[column]).sum();
-                    let all = self.stiffness[row * self.left_over.len() + column] + of_elements;
-                    all * pencil.scales[r] * pencil.scales[c] / (pencil.omega * pencil.omega)
-                })
-                .collect(),
             springpots: Vec::new(),
-            ..pencil.clone()
+            omega: pencil.omega,
+            scales: vec![1.0; n],
+            stiffness,
         };
         let largest = still.stiffness.iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
         // Next to the fastest rate what is left of sums is rounding.

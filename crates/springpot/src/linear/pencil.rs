@@ -1,6 +1,7 @@
 //! M s² + D s + K + Σ c s^alpha b bᵀ: the equations of small motions with the strokes inside series as unknowns of their own, so that
 //! their determinant has zeros and no poles.
 
+use super::assembly::{Assembly, Parts, Springpot};
 use super::linearisation::{LinearElement, Linearisation};
 use crate::law::{Tangent, Term};
 use num_complex::Complex64;
@@ -15,42 +16,41 @@ pub(super) struct Pencil {
     pub(super) mass: Vec<f64>,
     pub(super) damping: Vec<f64>,
     pub(super) stiffness: Vec<f64>,
-    pub(super) springpots: Vec<(Term, Vec<f64>)>,
+    pub(super) springpots: Vec<OfSpringpot>,
     pub(super) omega: f64,
     pub(super) scales: Vec<f64>,
+}
+
+/// push ⊗ stroke·c s^alpha.
+#[derive(Debug, Clone)]
+pub(super) struct OfSpringpot {
+    pub(super) term: Term,
+    pub(super) push: Vec<f64>,
+    pub(super) stroke: Vec<f64>,
 }
 
 impl Pencil {
     /// The equations over the free velocities; `None` where the mass matrix is not positive, or something is not finite.
     pub(super) fn new(linear: &Linearisation) -> Option<Self> {
-        let (n, free) = (linear.left_over.len(), &linear.free);
-        let tangents: Vec<Tangent> = linear.elements.iter().map(|element| element.tangent.reduced()).collect();
-        let size = free.len() + tangents.iter().map(inner).sum::<usize>();
+        let assembly = Assembly::new(linear, &[], Parts::Reduced, None);
+        let size = assembly.unknowns.len();
+        let whole = |power: usize| assembly.rows.iter().flat_map(|row| row.by[power].iter().copied()).collect();
+        let of_springpot = |(j, springpot): (usize, &Springpot)| OfSpringpot {
+            term: Term { coefficient: 1.0, order: springpot.order },
+            push: assembly.rows.iter().map(|row| row.springpots.get(j).copied().unwrap_or(0.0)).collect(),
+            stroke: springpot.stroke.clone(),
+        };
         let mut pencil = Self {
             size,
-            free: free.len(),
-            mass: vec![0.0; size * size],
-            damping: vec![0.0; size * size],
-            stiffness: vec![0.0; size * size],
-            springpots: Vec::new(),
+            free: linear.free.len(),
+            mass: whole(2),
+            damping: whole(1),
+            stiffness: whole(0),
+            springpots: assembly.springpots.iter().enumerate().map(of_springpot).collect(),
             omega: 1.0,
             scales: vec![1.0; size],
         };
-        for (r, &row) in free.iter().enumerate() {
-            for (c, &column) in free.iter().enumerate() {
-                let (to, from) = (r * size + c, row * n + column);
-                pencil.mass[to] = linear.mass[from];
-                pencil.damping[to] = linear.damping[from];
-                pencil.stiffness[to] = linear.stiffness[from];
-            }
-        }
-        let mut next = free.len();
-        for (element, tangent) in linear.elements.iter().zip(&tangents) {
-            let mut stroke = vec![0.0; size];
-            free.iter().zip(&mut stroke).for_each(|(&k, entry)| *entry = element.gradient[k]);
-            pencil.add(tangent, &stroke, &mut next);
-        }
-        pencil.scale(linear, &tangents)?;
+        pencil.scale(linear)?;
         Some(pencil)
     }
 
@@ -59,41 +59,8 @@ impl Pencil {
         self.springpots.is_empty()
     }
 
-    /// A law with the stroke `b` of the unknowns; parts in series but the last have strokes of their own.
-    fn add(&mut self, tangent: &Tangent, b: &[f64], next: &mut usize) {
-        match tangent {
-            Tangent::Leaf(term, _) => {
-                let matrix = match term.order {
-                    0.0 => &mut self.stiffness,
-                    1.0 => &mut self.damping,
-                    _ => {
-                        self.springpots.push((*term, b.to_vec()));
-                        return;
-                    }
-                };
-                for (row, r) in matrix.chunks_exact_mut(self.size).zip(b) {
-                    row.iter_mut().zip(b).for_each(|(entry, c)| *entry += term.coefficient * r * c);
-                }
-            }
-            Tangent::Whole(parts) => self.add(parts, b, next),
-            Tangent::Parallel(parts) => parts.iter().for_each(|part| self.add(part, b, next)),
-            Tangent::Series(parts) => {
-                let Some((last, others)) = parts.split_last() else { return };
-                let mut rest = b.to_vec();
-                for part in others {
-                    let mut own = vec![0.0; self.size];
-                    own[*next] = 1.0;
-                    rest[*next] -= 1.0;
-                    *next += 1;
-                    self.add(part, &own, next);
-                }
-                self.add(last, &rest, next);
-            }
-        }
-    }
-
     /// Brings the unknowns and s to sizes about 1.
-    fn scale(&mut self, linear: &Linearisation, tangents: &[Tangent]) -> Option<()> {
+    fn scale(&mut self, linear: &Linearisation) -> Option<()> {
         for k in 0..self.free {
             let mass = self.mass[k * (self.size + 1)];
             if !(mass > 0.0 && mass.is_finite()) {
@@ -101,10 +68,11 @@ impl Pencil {
             }
             self.scales[k] = mass.sqrt().recip();
         }
-        self.omega = self.fastest(linear, tangents);
+        self.omega = self.fastest(linear);
         for k in self.free..self.size {
             let at = k * (self.size + 1);
-            let of_springpots = self.springpots.iter().map(|(term, b)| term.stiffness(self.omega).abs() * b[k] * b[k]);
+            let own = |of: &OfSpringpot| (of.term.stiffness(self.omega) * of.push[k] * of.stroke[k]).abs();
+            let of_springpots = self.springpots.iter().map(own);
             let stiffness = self.stiffness[at].abs() + self.omega * self.damping[at].abs() + of_springpots.sum::<f64>();
             self.scales[k] = if stiffness > 0.0 { self.omega / stiffness.sqrt() } else { 1.0 };
         }
@@ -114,20 +82,29 @@ impl Pencil {
                 *entry *= scales[k / size] * scales[k % size] * omega.powi(power - 2);
             }
         }
-        for (term, b) in &mut self.springpots {
+        for OfSpringpot { term, push, stroke } in &mut self.springpots {
             term.coefficient *= omega.powf(term.order - 2.0);
-            b.iter_mut().zip(scales).for_each(|(entry, scale)| *entry *= scale);
+            for row in [push, stroke] {
+                row.iter_mut().zip(scales).for_each(|(entry, scale)| *entry *= scale);
+            }
         }
         let finite = |matrix: &[f64]| matrix.iter().all(|entry| entry.is_finite());
         (finite(&self.mass) && finite(&self.damping) && finite(&self.stiffness) && omega > 0.0).then_some(())
     }
 
     /// About the fastest rate at which the masses answer, rad/s: ω² = |D ω + K + Σ K_e(ω) g gᵀ| in units of the masses.
-    fn fastest(&self, linear: &Linearisation, tangents: &[Tangent]) -> f64 {
+    fn fastest(&self, linear: &Linearisation) -> f64 {
+        let tangents: Vec<Tangent> = linear.elements.iter().map(|element| element.tangent.reduced()).collect();
+        let control = &linear.control;
+        let slope = |matrix: &[f64], at: usize| matrix.get(at).copied().unwrap_or(0.0);
         let norm = |omega: f64| {
             let moduli: Vec<f64> = {
                 let own = |tangent: &Tangent| tangent.modulus(omega.into()).re;
                 tangents.iter().map(own).map(|k| if k.is_finite() { k } else { 0.0 }).collect()
+            };
+            let of_terms = |k: usize| -> f64 {
+                let own = control.terms.iter().filter(|term| term.velocity == k);
+                own.map(|term| term.gain * omega.powf(term.order)).sum()
             };
             let mut sum = 0.0;
             for r in 0..self.free {
@@ -136,7 +113,10 @@ impl Pencil {
                     let of = |(e, k): (&LinearElement, &f64)| k * e.gradient[row] * e.gradient[column];
                     let of_elements: f64 = linear.elements.iter().zip(&moduli).map(of).sum();
                     let at = row * linear.left_over.len() + column;
-                    let all = linear.stiffness[at] + omega * linear.damping[at] + of_elements;
+                    let of_control = slope(&control.by_q, at) + omega * slope(&control.by_v, at);
+                    let of_terms = if row == column { of_terms(row) } else { 0.0 };
+                    let of_robot = linear.stiffness[at] + omega * linear.damping[at] + of_elements;
+                    let all = of_robot - of_control + of_terms;
                     let entry = all * self.scales[r] * self.scales[c];
                     sum += entry * entry;
                 }
@@ -158,11 +138,11 @@ impl Pencil {
         let mut value: Vec<Complex64> =
             (0..count).map(|k| s * (s * self.mass[k] + self.damping[k]) + self.stiffness[k]).collect();
         let mut slope: Vec<Complex64> = (0..count).map(|k| s * (2.0 * self.mass[k]) + self.damping[k]).collect();
-        for (term, b) in &self.springpots {
+        for OfSpringpot { term, push, stroke } in &self.springpots {
             let modulus = term.coefficient * continued_power(s, term.order);
             let rate = modulus * term.order / s;
-            for (r, row) in b.iter().enumerate().filter(|(_, row)| **row != 0.0) {
-                for (c, column) in b.iter().enumerate() {
+            for (r, row) in push.iter().enumerate().filter(|(_, row)| **row != 0.0) {
+                for (c, column) in stroke.iter().enumerate() {
                     value[r * self.size + c] += modulus * (row * column);
                     slope[r * self.size + c] += rate * (row * column);
                 }
@@ -179,24 +159,14 @@ impl Pencil {
             matrix.chunks_exact(n).map(|row| row.iter().zip(x).map(|(m, x)| x * *m).sum()).collect()
         };
         let mut broken = vec![Complex64::ZERO; n];
-        for (term, b) in &self.springpots {
-            let along: Complex64 = b.iter().zip(x).map(|(b, x)| x * *b).sum();
+        for OfSpringpot { term, push, stroke } in &self.springpots {
+            let along: Complex64 = stroke.iter().zip(x).map(|(b, x)| x * *b).sum();
             let force = term.coefficient * continued_power(s, term.order) * along;
-            broken.iter_mut().zip(b).for_each(|(sum, b)| *sum += force * *b);
+            broken.iter_mut().zip(push).for_each(|(sum, b)| *sum += force * *b);
         }
         let r = s.norm();
         let whole = size(&times(&self.mass)) * r * r + size(&times(&self.damping)) * r + size(&times(&self.stiffness));
         [size(&broken), whole + size(&broken)]
-    }
-}
-
-/// Unknowns inside a law.
-fn inner(tangent: &Tangent) -> usize {
-    match tangent {
-        Tangent::Leaf(..) => 0,
-        Tangent::Whole(parts) => inner(parts),
-        Tangent::Parallel(parts) => parts.iter().map(inner).sum(),
-        Tangent::Series(parts) => parts.len().saturating_sub(1) + parts.iter().map(inner).sum::<usize>(),
     }
 }
 

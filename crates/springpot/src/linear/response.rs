@@ -1,7 +1,7 @@
 //! How columns answer to sines.
 
+use super::assembly::{Assembly, Parts, Row};
 use super::linearisation::{LinearElement, Linearisation};
-use crate::linalg::ComplexLu;
 use crate::observe::{Axis, ElementQuantity, LeafQuantity, Quantity};
 use num_complex::Complex64;
 
@@ -12,8 +12,10 @@ pub enum Excitation {
     Torque(usize),
     /// The coordinate of a velocity that signals move.
     Motion(usize),
-    /// An input of an element.
+    /// An input of an element, beside what feedback says of it.
     Input(usize, usize),
+    /// Where a controller wants the joint of a velocity ([`super::LinearControl::aims`]).
+    Reference(usize),
 }
 
 /// Why a column does not answer linearly.
@@ -37,7 +39,8 @@ impl Linearisation {
     /// The complex amplitude of a quantity at the angular frequency `omega`, rad/s, under an excitation of amplitude 1: of
     /// Re(A e^{iωt}) under cos ωt.
     ///
-    /// X_f = −T_ff⁻¹ (T_fp X_p + Σ g ∂F/∂u − δτ) with T(iω) = M s² + D s + K + Σ K_e* g gᵀ.
+    /// X_f = −T_ff⁻¹ (T_fp X_p + Σ g ∂F/∂u − δτ) with T(iω) = M s² + D s + K + Σ K_e* g gᵀ − ∂τ/∂q − s ∂τ/∂v + …, of the closed loop where
+    /// something follows from the state. A torque acts beside that of a controller; `tau` is what both say.
     ///
     /// # Errors
     /// [`NoResponse`] where the quantity is not linear in what moves.
@@ -47,104 +50,87 @@ impl Linearisation {
         of: Quantity,
         omega: f64,
     ) -> Result<Complex64, NoResponse> {
-        check(of)?;
-        let n = self.model.nv();
+        let assembly = Assembly::new(self, &[excitation], Parts::All, None);
+        let row = assembly.observe(of)?;
         let s = Complex64::new(0.0, omega);
-        let input = |e: usize| match excitation {
-            Excitation::Input(of, i) if of == e => Some(i),
-            _ => None,
+        let powers = assembly.powers(s);
+        let columns = &assembly.solve(s, &powers)[0];
+        Ok(row.times(s, &assembly.springpots, &powers, columns))
+    }
+
+    /// Whether a quantity is linear in what moves.
+    ///
+    /// # Errors
+    /// [`NoResponse`].
+    pub fn is_linear(&self, of: Quantity) -> Result<(), NoResponse> {
+        Assembly::new(self, &[], Parts::All, None).observe(of).map(|_| ())
+    }
+
+    /// All that can be excited: torques on what forces move, coordinates of joints that signals move, inputs of elements, and references.
+    pub fn excitations(&self) -> Vec<Excitation> {
+        let torques = self.free.iter().map(|&k| Excitation::Torque(k));
+        let moved = self.moved.iter().map(|&k| Excitation::Motion(k));
+        let of = |(e, element): (usize, &LinearElement)| (0..element.inputs).map(move |i| Excitation::Input(e, i));
+        let inputs = self.elements.iter().enumerate().flat_map(of);
+        let aims = self.control.aims.iter().map(|aim| Excitation::Reference(aim.velocity));
+        torques.chain(moved).chain(inputs).chain(aims).collect()
+    }
+}
+
+impl Assembly<'_> {
+    /// A quantity as a row.
+    ///
+    /// # Errors
+    /// [`NoResponse`].
+    pub(super) fn observe(&self, of: Quantity) -> Result<Row, NoResponse> {
+        check(of)?;
+        self.observed(of).ok_or(NoResponse::None)
+    }
+
+    fn observed(&self, of: Quantity) -> Option<Row> {
+        let linear = self.linear;
+        let n = linear.left_over.len();
+        let line = |matrix: &[f64], k: usize| matrix.chunks(n.max(1)).nth(k).map(|line| self.of_velocities(line, 0));
+        let unit = |k: usize, power: usize| {
+            let weights: Vec<f64> = (0..n).map(|own| f64::from(u8::from(own == k))).collect();
+            (k < n).then(|| self.of_velocities(&weights, power))
         };
-        let whole = self.dynamic_stiffness(s);
-        // What the excitation alone asks of the actuators.
-        let mut asked = vec![Complex64::ZERO; n];
-        for (e, element) in self.elements.iter().enumerate() {
-            if let Some(i) = input(e) {
-                let gain = element.tangent.gain(s, i) + element.stretched_by(i) * element.tangent.modulus(s);
-                asked.iter_mut().zip(&element.gradient).for_each(|(asked, g)| *asked += gain * g);
-            }
-        }
-        let mut x = vec![Complex64::ZERO; n];
-        if let Excitation::Motion(k) = excitation {
-            x[k] = Complex64::ONE;
-        }
-        let mut right: Vec<Complex64> = self.free.iter().map(|&k| -row(&whole, n, k, &x) - asked[k]).collect();
-        if let Excitation::Torque(k) = excitation
-            && let Some(place) = self.free.iter().position(|&free| free == k)
-        {
-            right[place] += 1.0;
-        }
-        let count = self.free.len();
-        let block = (0..count * count).map(|i| whole[self.free[i / count] * n + self.free[i % count]]).collect();
-        let solution = ComplexLu::new(count, block).solve(&right);
-        self.free.iter().zip(solution).for_each(|(&k, value)| x[k] = value);
-        self.observe(of, s, &x, &input, &|k| row(&whole, n, k, &x) + asked[k]).ok_or(NoResponse::None)
-    }
-
-    /// T(s), nv × nv.
-    fn dynamic_stiffness(&self, s: Complex64) -> Vec<Complex64> {
-        let n = self.model.nv();
-        let mut whole: Vec<Complex64> =
-            (0..n * n).map(|i| s * (s * self.mass[i] + self.damping[i]) + self.stiffness[i]).collect();
-        for element in &self.elements {
-            let modulus = element.tangent.modulus(s);
-            for (r, row) in element.gradient.iter().enumerate() {
-                for (c, column) in element.gradient.iter().enumerate() {
-                    whole[r * n + c] += modulus * (row * column);
-                }
-            }
-        }
-        whole
-    }
-
-    /// A quantity where the tangent coordinates have the amplitudes `x`.
-    fn observe(
-        &self,
-        of: Quantity,
-        s: Complex64,
-        x: &[Complex64],
-        input: &dyn Fn(usize) -> Option<usize>,
-        torque: &dyn Fn(usize) -> Complex64,
-    ) -> Option<Complex64> {
-        let n = self.model.nv();
-        let along = |vector: &[f64]| vector.iter().zip(x).map(|(g, x)| g * x).sum::<Complex64>();
         match of {
-            Quantity::Coordinate(i) => self.coordinates.chunks(n.max(1)).nth(i).map(along),
-            Quantity::Velocity(k) => x.get(k).map(|x| s * x),
-            Quantity::Acceleration(k) => x.get(k).map(|x| s * s * x),
-            Quantity::Torque(k) => (k < n).then(|| torque(k)),
+            Quantity::Coordinate(i) => line(&linear.coordinates, i),
+            Quantity::Velocity(k) => unit(k, 1),
+            Quantity::Acceleration(k) => unit(k, 2),
+            Quantity::Torque(k) => self.needed.get(k).cloned(),
             Quantity::Gripper(axis) => {
                 let place = Axis::ALL.iter().position(|other| *other == axis)?;
-                self.gripper.as_ref().map(|jacobian| along(&jacobian[place * n..(place + 1) * n]))
+                line(linear.gripper.as_ref()?, place)
             }
             Quantity::Element(e, quantity) => {
-                let element = self.elements.get(e)?;
-                let stroke = along(&element.gradient);
-                let mut leaves = Vec::new();
-                let own = stroke + input(e).map_or(0.0, |i| element.stretched_by(i));
-                let force = element.tangent.answer(s, own, input(e), &mut |leaf| leaves.push(leaf));
+                let element = linear.elements.get(e)?;
+                let force = &self.forces[e];
+                let stroke = |power: usize| self.of_velocities(&element.gradient, power);
                 Some(match quantity {
-                    ElementQuantity::Length | ElementQuantity::Stroke => stroke,
-                    ElementQuantity::Rate => s * stroke,
-                    ElementQuantity::Force => force,
+                    ElementQuantity::Length | ElementQuantity::Stroke => stroke(0),
+                    ElementQuantity::Rate => stroke(1),
+                    ElementQuantity::Force => force.clone(),
                     ElementQuantity::Derivative => {
                         let fractional = |order: f64| order > 0.0 && order < 1.0;
+                        let leaves = &self.leaves[e];
                         let first = leaves.iter().find(|leaf| fractional(leaf.order));
                         let first = first.or_else(|| leaves.iter().find(|leaf| leaf.order == 1.0));
-                        first.map_or(stroke, |leaf| leaf.derivative)
+                        first.map_or_else(|| stroke(0), |leaf| leaf.derivative.clone())
                     }
                     ElementQuantity::GeneralizedForce(k) => {
-                        let bend = element.hessian.chunks(n.max(1)).nth(k).map(along)?;
-                        -force * element.gradient.get(k)? - element.force * bend
+                        let bend = line(&element.hessian, k)?;
+                        self.sum([(-element.gradient.get(k)?, force), (-element.force, &bend)])
                     }
-                    ElementQuantity::InputValue(i) if input(e) == Some(i) => Complex64::ONE,
-                    ElementQuantity::InputValue(_) => Complex64::ZERO,
+                    ElementQuantity::InputValue(i) => self.of_columns(self.input(e, i)),
                     ElementQuantity::Leaf(i, quantity) => {
-                        let leaf = leaves.get(i)?;
+                        let leaf = self.leaves[e].get(i)?;
                         match quantity {
-                            LeafQuantity::Stroke => leaf.stroke,
-                            LeafQuantity::Rate => s * leaf.stroke,
-                            LeafQuantity::Force => leaf.force,
-                            LeafQuantity::Derivative => leaf.derivative,
+                            LeafQuantity::Stroke => leaf.stroke.clone(),
+                            LeafQuantity::Rate => leaf.stroke.rate()?,
+                            LeafQuantity::Force => leaf.force.clone(),
+                            LeafQuantity::Derivative => leaf.derivative.clone(),
                         }
                     }
                     ElementQuantity::Told(_)
@@ -155,13 +141,6 @@ impl Linearisation {
             }
             Quantity::Time | Quantity::GripperError | Quantity::Energy(_) | Quantity::Derivative(_) => None,
         }
-    }
-}
-
-impl LinearElement {
-    /// By how much a unit of an input makes its stroke longer.
-    fn stretched_by(&self, input: usize) -> f64 {
-        self.stretch.filter(|(own, _)| *own == input).map_or(0.0, |(_, stretch)| stretch)
     }
 }
 
@@ -177,9 +156,4 @@ fn check(of: Quantity) -> Result<(), NoResponse> {
         Quantity::Time | Quantity::GripperError | Quantity::Derivative(_) => Err(NoResponse::NotLinear),
         _ => Ok(()),
     }
-}
-
-/// A row of a matrix times a vector.
-fn row(matrix: &[Complex64], n: usize, k: usize, x: &[Complex64]) -> Complex64 {
-    matrix[k * n..(k + 1) * n].iter().zip(x).map(|(m, x)| m * x).sum()
 }

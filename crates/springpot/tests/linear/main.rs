@@ -1,8 +1,11 @@
 //! Small motions about rest: eigenvalues, equilibria, frequency responses.
 
 mod classical;
+mod closed;
 mod equilibria;
 mod fractional;
+mod margins;
+mod models;
 mod responses;
 mod runs;
 #[path = "../support/mod.rs"]

@@ -5,23 +5,20 @@ use super::{Problem, Stopped, Told};
 use crate::arguments::ModesOptions;
 use crate::grid::{Grid, Set};
 use crate::{frequency, terminal};
+use num_complex::Complex64;
 use serde_json::Value;
-use springpot::actuation::Drive;
-use springpot::linear::{Excitation, NoResponse};
-use springpot::observe::Quantity;
-use springpot::system::Motion;
 use springpot_report::{Axis, Curve, Panel, Plot, Scale};
+use springpot_run::linear;
 use springpot_run::numbers::four;
-use springpot_scenario::suggest;
 use std::f64::consts::TAU;
 
 /// The answer at one frequency.
-struct Row {
-    hertz: f64,
+pub(super) struct Row {
+    pub(super) hertz: f64,
     re: f64,
     im: f64,
     /// Continuous over the rows, deg.
-    phase: f64,
+    pub(super) phase: f64,
 }
 
 impl Row {
@@ -30,18 +27,14 @@ impl Row {
     }
 }
 
-/// Something with a name and a unit.
-struct Named<T> {
-    name: String,
-    unit: String,
-    what: T,
-}
-
 pub(super) fn told(asked: &Asked, options: &ModesOptions, input: &str, column: &str) -> Result<Told, Stopped> {
-    let input = find_input(asked, input)?;
-    let column = find_column(asked, column)?;
+    let input = linear::input(&asked.about, "--frequency-response", input)?;
+    let column = linear::column(&asked.about, "--frequency-response", column)?;
     let band = frequency::band(&options.from, &options.to, options.points)?;
-    let rows = rows(asked, &input, &column, &band)?;
+    let rows = rows(&band, |omega| {
+        let answer = asked.about.linear.frequency_response(input.what, column.what, omega);
+        answer.map_err(|why| (format!("{}: {why}", column.name), "take another column".to_owned()))
+    })?;
     let unit = match (&*column.unit, &*input.unit) {
         (column, "") => column.to_owned(),
         ("", input) => format!("1/({input})"),
@@ -51,89 +44,16 @@ pub(super) fn told(asked: &Asked, options: &ModesOptions, input: &str, column: &
         page: page(asked, &input.name, &column.name, &unit, &rows),
         csv: csv(&unit, &rows),
         json: json(asked, &input.name, &column.name, &unit, &rows),
-        plot: plot(&input.name, &column.name, &unit, &rows),
+        plot: bode(format!("{} under sines of {}", column.name, input.name), &unit, &rows, options.decibel),
+        beside: None,
     })
 }
 
-/// All that can be moved by a sine.
-fn inputs(asked: &Asked) -> Vec<Named<Excitation>> {
-    let (system, free) = (&asked.system, &asked.linear.free);
-    let model = &system.model;
-    let mut all = Vec::new();
-    let labels = model.v_labels();
-    for &k in free {
-        let unit = labels[k].dimension.units().force.to_owned();
-        all.push(Named { name: format!("tau.{}", labels[k].name), unit, what: Excitation::Torque(k) });
-    }
-    if let Motion::Forward(forward) = &system.motion {
-        for (j, drive) in model.own_joints().zip(&forward.drives) {
-            let rates = model.v_range(j);
-            if matches!(drive, Drive::Prescribed(_)) && rates.len() == 1 {
-                let label = &labels[rates.start];
-                let unit = label.dimension.units().coordinate.to_owned();
-                let what = Excitation::Motion(rates.start);
-                all.push(Named { name: format!("q.{}", label.name), unit, what });
-            }
-        }
-    }
-    for (e, element) in system.elements.iter().enumerate() {
-        for (i, input) in element.entry.inputs.iter().enumerate() {
-            let name = format!("{}.{}", element.name, input.name);
-            all.push(Named { name, unit: input.unit.to_string(), what: Excitation::Input(e, i) });
-        }
-    }
-    all
-}
-
-fn find_input(asked: &Asked, name: &str) -> Result<Named<Excitation>, Problem> {
-    let mut all = inputs(asked);
-    match all.iter().position(|input| input.name == name) {
-        Some(k) => Ok(all.swap_remove(k)),
-        None => {
-            let help = suggest(name, all.iter().map(|input| &*input.name));
-            let joints = asked.system.model.joint_names();
-            let message = match name.strip_prefix("q.").or_else(|| name.strip_prefix("tau.")) {
-                Some(joint) if joints.iter().any(|other| other == joint) && name.starts_with("q.") => {
-                    format!("--frequency-response {name}: no signal of `prescribed` moves this joint")
-                }
-                Some(joint) if joints.iter().any(|other| other == joint) => {
-                    format!("--frequency-response {name}: forces do not move this joint")
-                }
-                _ => format!("--frequency-response {name}: there is no such input"),
-            };
-            Err((message, help))
-        }
-    }
-}
-
-fn find_column(asked: &Asked, name: &str) -> Result<Named<Quantity>, Problem> {
-    let observables = asked.system.observables().with_leaves();
-    let columns = observables.columns();
-    let answers = |quantity: Quantity| {
-        let first = Excitation::Torque(usize::MAX);
-        asked.linear.frequency_response(first, quantity, 1.0)
-    };
-    let Some(k) = columns.iter().position(|column| column.name == name) else {
-        let known =
-            observables.quantities().into_iter().zip(&columns).filter(|(quantity, _)| answers(*quantity).is_ok());
-        let help = suggest(name, known.map(|(_, column)| &*column.name));
-        return Err((format!("--frequency-response: there is no column {name:?}"), help));
-    };
-    let quantity = observables.quantities()[k];
-    match answers(quantity) {
-        Ok(_) => Ok(Named { name: name.to_owned(), unit: columns[k].unit.clone(), what: quantity }),
-        Err(why @ (NoResponse::Energy | NoResponse::Told | NoResponse::NotLinear | NoResponse::None)) => {
-            let help = "take a coordinate, a velocity, a torque, something of an element or the gripper".to_owned();
-            Err((format!("--frequency-response {name}: {why}"), help))
-        }
-    }
-}
-
-fn rows(asked: &Asked, input: &Named<Excitation>, column: &Named<Quantity>, band: &[f64]) -> Result<Vec<Row>, Problem> {
+/// The answers over a band, Hz.
+pub(super) fn rows(band: &[f64], answer: impl Fn(f64) -> Result<Complex64, Problem>) -> Result<Vec<Row>, Problem> {
     let mut rows: Vec<Row> = Vec::with_capacity(band.len());
     for &hertz in band {
-        let answer = asked.linear.frequency_response(input.what, column.what, TAU * hertz);
-        let answer = answer.map_err(|why| (format!("{}: {why}", column.name), "take another column".to_owned()))?;
+        let answer = answer(TAU * hertz)?;
         let own = answer.arg().to_degrees();
         let phase = rows.last().map_or(own, |before| own + 360.0 * ((before.phase - own) / 360.0).round());
         rows.push(Row { hertz, re: answer.re, im: answer.im, phase });
@@ -161,7 +81,7 @@ fn page(asked: &Asked, input: &str, column: &str, unit: &str, rows: &[Row]) -> S
     text
 }
 
-fn csv(unit: &str, rows: &[Row]) -> String {
+pub(super) fn csv(unit: &str, rows: &[Row]) -> String {
     let mut text = format!("frequency [Hz],gain [{unit}],phase [deg],real [{unit}],imaginary [{unit}]\n");
     for row in rows {
         text.push_str(&format!("{},{},{},{},{}\n", row.hertz, row.gain(), row.phase, row.re, row.im));
@@ -170,38 +90,49 @@ fn csv(unit: &str, rows: &[Row]) -> String {
 }
 
 fn json(asked: &Asked, input: &str, column: &str, unit: &str, rows: &[Row]) -> Value {
-    let all = |of: fn(&Row) -> f64| -> Value { rows.iter().map(of).collect::<Vec<_>>().into() };
     let mut value = asked.json();
     value["input"] = input.into();
     value["column"] = column.into();
     value["unit"] = unit.into();
+    add_arrays(&mut value, rows);
+    value
+}
+
+/// The answers as arrays.
+pub(super) fn add_arrays(value: &mut Value, rows: &[Row]) {
+    let all = |of: fn(&Row) -> f64| -> Value { rows.iter().map(of).collect::<Vec<_>>().into() };
     value["frequency"] = all(|row| row.hertz);
     value["gain"] = all(Row::gain);
     value["phase"] = all(|row| row.phase);
     value["real"] = all(|row| row.re);
     value["imaginary"] = all(|row| row.im);
-    value
 }
 
-/// Gain and phase over the frequency.
-fn plot(input: &str, column: &str, unit: &str, rows: &[Row]) -> Plot {
+/// Gain and phase over the frequency, the gain in dB where that is asked for.
+pub(super) fn bode(title: String, unit: &str, rows: &[Row], decibel: bool) -> Plot {
     let curve = |of: &dyn Fn(&Row) -> f64| Curve {
         x: rows.iter().map(|row| row.hertz).collect(),
         y: rows.iter().map(of).collect(),
         ..Curve::default()
     };
     let unit = unit.replace('*', "·");
+    let level = |row: &Row| 20.0 * row.gain().log10();
     let panel = |label: String, scale: Scale, of: &dyn Fn(&Row) -> f64| Panel {
         y: Some(Axis { label, scale, ..Axis::default() }),
         curves: vec![curve(of)],
         ..Panel::default()
     };
     Plot {
-        title: Some(format!("{column} under sines of {input}")),
+        title: Some(title),
         x: Axis { label: "frequency, Hz".to_owned(), scale: Scale::Log, ..Axis::default() },
         columns: Some(1),
         panels: vec![
-            panel(format!("gain, {unit}"), Scale::Log, &Row::gain),
+            match (decibel, &*unit) {
+                (true, "1") => panel("gain, dB".to_owned(), Scale::Linear, &level),
+                (true, unit) => panel(format!("gain, dB of {unit}"), Scale::Linear, &level),
+                (false, "1") => panel("gain".to_owned(), Scale::Log, &Row::gain),
+                (false, unit) => panel(format!("gain, {unit}"), Scale::Log, &Row::gain),
+            },
             panel("phase, deg".to_owned(), Scale::Linear, &|row| row.phase),
         ],
         ..Plot::default()

@@ -4,9 +4,9 @@ use super::asked::Asked;
 use super::{Stopped, Told};
 use crate::grid::{Grid, Set};
 use crate::{diagnostic, plain, terminal};
-use serde_json::{Value, json};
 use springpot::linear::{Mode, Modes, ModesError};
 use springpot_report::{Curve, Panel, Plot};
+use springpot_run::linear::modes_json;
 use springpot_run::numbers::{brief, count, short};
 
 /// Coordinates that are printed in a line; --json has all of them.
@@ -15,22 +15,33 @@ const MOST_COORDINATES: usize = 12;
 const ROUNDING: f64 = 1e-13;
 
 pub(super) fn told(asked: &Asked) -> Result<Told, Stopped> {
-    let modes = asked.linear.modes().map_err(|error| Stopped::Refused((error.to_string(), help(error).to_owned())))?;
+    let modes = asked.about.linear.modes().map_err(|error| Stopped::Refused(problem(error)))?;
+    warn_of_missing(&modes, "");
+    let names = asked.about.linear.velocity_names();
+    Ok(Told {
+        page: page(asked, &modes, &names),
+        csv: HEADER.to_owned() + &rows(&modes, &names).collect::<String>(),
+        json: modes_json(&asked.about, &modes),
+        plot: plot(asked, &modes),
+        beside: None,
+    })
+}
+
+/// Says where one may be missing, of the case of this name.
+pub(super) fn warn_of_missing(modes: &Modes, case: &str) {
     if !modes.is_complete() {
         let counted = modes.counted.map_or_else(|| "cannot be counted".to_owned(), |counted| format!("are {counted}"));
+        let lead = if case.is_empty() { String::new() } else { format!("{case}: ") };
         let message = format!(
-            "the eigenvalues {counted} by the principle of the argument, but {} are found: one may be missing",
+            "{lead}the eigenvalues {counted} by the principle of the argument, but {} are found: one may be missing",
             modes.found
         );
         diagnostic::warning(message, None);
     }
-    let names = asked.linear.velocity_names();
-    Ok(Told {
-        page: page(asked, &modes, &names),
-        csv: csv(&modes, &names),
-        json: json(asked, &modes),
-        plot: plot(asked, &modes),
-    })
+}
+
+pub(super) fn problem(error: ModesError) -> (String, String) {
+    (error.to_string(), help(error).to_owned())
 }
 
 fn help(error: ModesError) -> &'static str {
@@ -84,7 +95,7 @@ fn page(asked: &Asked, modes: &Modes, names: &[String]) -> String {
 }
 
 /// `-0.3 ± 6.2i`
-fn eigenvalue(mode: &Mode) -> String {
+pub(super) fn eigenvalue(mode: &Mode) -> String {
     let s = mode.eigenvalue;
     let part = |x: f64| brief(if x.abs() < ROUNDING * s.norm() { 0.0 } else { x });
     if s.im == 0.0 { part(s.re) } else { format!("{} ± {}i", part(s.re), part(s.im)) }
@@ -115,55 +126,41 @@ fn remarks(modes: &Modes) -> Vec<String> {
     remarks
 }
 
-fn csv(modes: &Modes, names: &[String]) -> String {
-    let mut text =
-        "re [1/s],im [1/s],frequency [Hz],damped_frequency [Hz],damping_ratio,time_constant [s],moves\n".to_owned();
-    for mode in &modes.modes {
+/// The columns of CSV files.
+pub(super) const HEADER: &str =
+    "re [1/s],im [1/s],frequency [Hz],damped_frequency [Hz],damping_ratio,time_constant [s],moves\n";
+
+/// Rows of CSV files.
+pub(super) fn rows(modes: &Modes, names: &[String]) -> impl Iterator<Item = String> {
+    modes.modes.iter().map(|mode| {
         let s = mode.eigenvalue;
         let (f, damped, ratio) = (mode.frequency(), mode.damped_frequency(), mode.damping_ratio());
         let tau = if s.re == 0.0 { String::new() } else { format!("{}", mode.time_constant()) };
-        text.push_str(&format!("{},{},{f},{damped},{ratio},{tau},{}\n", s.re, s.im, quoted(&names[mode.largest])));
-    }
-    text
+        format!("{},{},{f},{damped},{ratio},{tau},{}\n", s.re, s.im, quoted(&names[mode.largest]))
+    })
 }
 
 /// A cell of a CSV file.
-fn quoted(text: &str) -> String {
+pub(super) fn quoted(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }
 
-fn json(asked: &Asked, modes: &Modes) -> Value {
-    let mode = |mode: &Mode| {
-        let shape = |part: &dyn Fn(usize) -> f64| (0..mode.shape.len()).map(part).collect::<Vec<_>>();
-        json!({
-            "re": mode.eigenvalue.re, "im": mode.eigenvalue.im, "frequency": mode.frequency(),
-            "damped_frequency": mode.damped_frequency(), "damping_ratio": mode.damping_ratio(),
-            "time_constant": (mode.eigenvalue.re != 0.0).then(|| mode.time_constant()), "unstable": mode.is_unstable(),
-            "moves": mode.largest, "shape_re": shape(&|k| mode.shape[k].re), "shape_im": shape(&|k| mode.shape[k].im),
-        })
-    };
-    let mut value = asked.json();
-    value["modes"] = modes.modes.iter().map(mode).collect();
-    value["free_motions"] = modes.free_motions.into();
-    value["fractional"] = modes.is_fractional.into();
-    value["complete"] = modes.is_complete().into();
-    value
+/// The eigenvalues as marks.
+pub(super) fn marks(modes: &Modes) -> Curve {
+    let both = modes.modes.iter().map(|mode| mode.eigenvalue).flat_map(|s| [s, s.conj()]);
+    let (x, y): (Vec<f64>, Vec<f64>) = both.map(|s| (s.re, s.im)).unzip();
+    // One run for each mark, so that no line joins them.
+    let gaps = |values: Vec<f64>| values.into_iter().flat_map(|value| [value, f64::NAN]).collect();
+    Curve { x: gaps(x), y: gaps(y), is_marked: true, ..Curve::default() }
 }
 
 /// The eigenvalues in the plane.
 fn plot(asked: &Asked, modes: &Modes) -> Plot {
-    let both = modes.modes.iter().map(|mode| mode.eigenvalue).flat_map(|s| [s, s.conj()]);
-    let (x, y) = both.map(|s| (s.re, s.im)).unzip();
-    // One run for each mark, so that no line joins them.
-    let marks = |(x, y): (Vec<f64>, Vec<f64>)| {
-        let gaps = |values: Vec<f64>| values.into_iter().flat_map(|value| [value, f64::NAN]).collect();
-        Curve { x: gaps(x), y: gaps(y), is_marked: true, ..Curve::default() }
-    };
     Plot {
         title: asked.place().split(',').next().map(|place| format!("Eigenvalues about {place}")),
         x: "real part, 1/s".into(),
         y: "imaginary part, 1/s".into(),
-        panels: vec![Panel { curves: vec![marks((x, y))], ..Panel::default() }],
+        panels: vec![Panel { curves: vec![marks(modes)], ..Panel::default() }],
         ..Plot::default()
     }
 }

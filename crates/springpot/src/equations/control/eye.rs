@@ -23,7 +23,7 @@ pub(crate) struct Eye<'a> {
 }
 
 /// ∂s/∂q and ∂s/∂v of a sense, nv values each.
-pub(super) type Slopes = [Vec<f64>; 2];
+pub(crate) type Slopes = [Vec<f64>; 2];
 
 /// How an input answers to the state, and the force of its element to it.
 #[derive(Debug, Clone, Default)]
@@ -37,7 +37,7 @@ pub(crate) struct InputSlopes {
 
 impl Eye<'_> {
     /// The value of a sense; NaN of one that follows from forces.
-    pub(super) fn value(&self, sense: Sense) -> f64 {
+    pub(crate) fn value(&self, sense: Sense) -> f64 {
         let site = || self.system.gripper.as_ref().expect("a gripper that is named");
         match sense {
             Sense::Coordinate { place, .. } | Sense::Part { place, .. } => self.q[place],
@@ -77,7 +77,7 @@ impl Eye<'_> {
     }
 
     /// How a sense answers to positions and velocities.
-    pub(super) fn slopes(&self, sense: Sense) -> Slopes {
+    pub(crate) fn slopes(&self, sense: Sense) -> Slopes {
         let (model, n) = (&self.system.model, self.system.model.nv());
         let mut slopes = [vec![0.0; n], vec![0.0; n]];
         let site = || self.system.gripper.as_ref().expect("a gripper that is named");
