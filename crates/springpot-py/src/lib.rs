@@ -17,6 +17,7 @@ mod quantity;
 mod run;
 mod scenario;
 mod simulation;
+mod tools;
 
 use pyo3::prelude::*;
 
@@ -32,5 +33,6 @@ fn _springpot(module: &Bound<'_, PyModule>) -> PyResult<()> {
     quantity::register(module)?;
     run::register(module)?;
     simulation::register(module)?;
+    tools::register(module)?;
     Ok(())
 }

@@ -25,8 +25,10 @@ from ._design import Design, DesignedParameter, design
 from ._fit import Fit, Parameter, Problem, fit, problem
 from ._gradient import gradient
 from ._law import Master, datasheet, law, laws, master, network, prony
+from ._read import read
 from ._regressor import element_regressor
 from ._run import Run, run
+from ._tools import Finding, Modulus, check, fmu, modulus
 from ._springpot import Bank, Law, Model, Prony, Simulation, SimulationState, Snapshot, __version__
 
 _Mapping.register(Snapshot)
@@ -37,10 +39,12 @@ __all__ = [
     "Design",
     "DesignedParameter",
     "Figure",
+    "Finding",
     "Fit",
     "Law",
     "Master",
     "Model",
+    "Modulus",
     "ModelError",
     "Parameter",
     "Problem",
@@ -54,18 +58,22 @@ __all__ = [
     "SpringpotError",
     "SpringpotWarning",
     "__version__",
+    "check",
     "datasheet",
     "design",
     "fit",
+    "fmu",
     "element_regressor",
     "fractional",
     "gradient",
     "law",
     "laws",
     "master",
+    "modulus",
     "network",
     "problem",
     "prony",
+    "read",
     "run",
     "sweep",
     "units",
