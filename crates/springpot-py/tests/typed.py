@@ -245,6 +245,9 @@ def runs(folder: Path) -> None:
     back: sp.Run = sp.read(folder / "run")
     again: sp.Run = sp.sweep(TEXT, sweep={"element.strut.alpha": [0.3, 0.6]}, columns=["t", "strut.*"])
     none: sp.Run = sp.sweep(TEXT, rows=False)
+    plane: sp.Run = sp.run(TEXT, sweep={"element.strut.alpha": [0.3, 0.6], "element.strut.mu": [5, 10]})
+    cells: sp.Figure = plane.map("max(strut.force)", "alpha", "mu", unit="kN", title="Peaks", y_scale="log", size=("90 mm", 0.06))
+    print(cells, plane.map("metric(largest)", x="element.strut.mu", y="alpha", where={}))
     found_cases: list[sp.Case] = [grid.case(alpha=0.6), grid.case({"element.strut.alpha": 0.3}), grid.case(name=grid.case(0).name)]
     asked: dict[str, Any] = back.scenario
     print(back == run, again.columns, len(none), found_cases, asked["text"])

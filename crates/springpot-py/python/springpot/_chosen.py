@@ -26,7 +26,7 @@ def chosen(cases: Sequence[Case], columns: Mapping[str, str], wanted: Mapping[st
     """The only case of that name and with these values, by path or by the last part of one; ``columns`` are the swept paths with their units."""
     if not wanted and name is None:
         raise TypeError("a case is chosen by its number, its name, or swept values: run.case(alpha=0.5)")
-    values = {_path(key, list(columns)): value for key, value in wanted.items()}
+    values = {path_of(key, list(columns)): value for key, value in wanted.items()}
     if len(values) < len(wanted):
         raise ValueError(f"one path is named twice: {', '.join(wanted)}")
     left = list(cases)
@@ -36,7 +36,7 @@ def chosen(cases: Sequence[Case], columns: Mapping[str, str], wanted: Mapping[st
             raise KeyError(unknown("case", name, list(dict.fromkeys(case.name for case in cases))))
     for path, value in values.items():
         known = [case.parameters[path] for case in cases]
-        left = [case for case in left if _is_one(case.parameters[path], value, known, columns[path])]
+        left = [case for case in left if is_one(case.parameters[path], value, known, columns[path])]
     if len(left) == 1:
         return left[0]
     asked = ", ".join([*([name] if name is not None else []), *(f"{path} = {value!r}" for path, value in values.items())])
@@ -48,7 +48,8 @@ def chosen(cases: Sequence[Case], columns: Mapping[str, str], wanted: Mapping[st
     raise KeyError(f"{len(left)} cases have {asked}: {more or 'they are equal, choose one by its number'}")
 
 
-def _path(key: str, paths: Sequence[str]) -> str:
+def path_of(key: str, paths: Sequence[str]) -> str:
+    """The path that is meant by itself, or by its end where no other ends so."""
     if not isinstance(key, str):
         raise TypeError(f"swept values are named by their paths, not by {key!r}")
     if key in paths:
@@ -61,7 +62,8 @@ def _path(key: str, paths: Sequence[str]) -> str:
     raise KeyError(unknown("swept path", key, paths))
 
 
-def _is_one(known: float | str, wanted: Any, all: Sequence[float | str], unit: str) -> bool:
+def is_one(known: float | str, wanted: Any, all: Sequence[float | str], unit: str) -> bool:
+    """Whether a swept value, one of ``all``, is the one that is wanted."""
     if isinstance(known, str):
         return bool(known == wanted)
     if isinstance(wanted, str):

@@ -352,6 +352,32 @@ class Run:
         with self._saved(figures=False, rows="csv") as folder:
             return draw(folder, wanted, x=x, where=where, units=units, title=title, look=look)
 
+    def map(
+        self,
+        z: str,
+        x: str,
+        y: str,
+        *,
+        where: Mapping[str, Any] | None = None,
+        unit: str | None = None,
+        title: str | None = None,
+        x_scale: str = "linear",
+        y_scale: str = "linear",
+        size: Sequence[str | float] | None = None,
+    ) -> Figure:
+        """Draws a number of every case over two swept values in coloured cells with a bar, as figures of the kind ``"map"`` are drawn.
+
+        ``z``: ``"metric(NAME)"``, or a statistic such as ``"max(strut.force)"`` (min, max, mean, rms, final), in ``unit``. ``x``, ``y``: swept paths, or their
+        last parts where these tell them apart. ``where``: the value of every other sweep, by path. Cells of cases that failed are empty.
+
+        Raises:
+            KeyError: no such path, column or metric.
+            ValueError: paths that are swept together, a sweep that is left open, a unit or a scale that does not fit.
+        """
+        from ._map import drawn
+
+        return drawn(self, z, x, y, where or {}, unit, title, (x_scale, y_scale), size)
+
     def figures(self) -> dict[str, Figure]:
         """The figures of the scenario, by their names, as ``springpot run`` draws them."""
         with self._saved(figures=True) as folder:

@@ -502,6 +502,14 @@ class Stored:
     def values(self, index: int) -> list[float | str]: ...
     def name(self, index: int) -> str: ...
 
+def map_figure(
+    title: str | None,
+    x: tuple[str, list[float], list[str], bool],
+    y: tuple[str, list[float], list[str], bool],
+    z: str,
+    cells: list[float],
+    size: list[float] | None,
+) -> tuple[str, bytes, bytes, list[str]]: ...
 def check(
     scenario: object, set: object = None
 ) -> list[tuple[str, str | None, tuple[str, int, int] | None]]: ...
