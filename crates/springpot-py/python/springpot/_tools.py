@@ -35,10 +35,10 @@ class Finding:
     """
 
     message: str
-    help: str | None = None
-    path: str | None = None
-    line: int | None = None
-    column: int | None = None
+    help: str | None
+    path: str | None
+    line: int | None
+    column: int | None
 
     def __str__(self) -> str:
         place = "" if self.path is None else f"{self.path}:{self.line}:{self.column}: "
