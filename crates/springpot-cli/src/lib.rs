@@ -41,7 +41,7 @@ mod signals;
 mod terminal;
 
 pub use programs::fmu::offer_library;
-pub use scenario::check::findings;
+pub use scenario::check::{Findings, findings};
 
 use arguments::{Arguments, Command, RunOptions};
 use clap::Parser;

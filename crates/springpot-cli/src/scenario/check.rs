@@ -96,11 +96,14 @@ impl Looked {
     }
 }
 
+/// What deserves a warning in a scenario, and why cases cannot run, by their index.
+pub type Findings = (Vec<Remark>, Vec<(usize, Trouble)>);
+
 /// What `springpot check` says of a scenario: what deserves a warning, and why cases cannot run, by their index; none where all can.
 ///
 /// # Errors
 /// The scenario is refused.
-pub fn findings(scenario: &Scenario, catalog: &Catalog) -> Result<(Vec<Remark>, Vec<(usize, Trouble)>), Refusals> {
+pub fn findings(scenario: &Scenario, catalog: &Catalog) -> Result<Findings, Refusals> {
     let looked = look(scenario, false, catalog)?;
     let remarks = looked.remarks();
     Ok((remarks, looked.cases.map_or_else(Vec::new, |at| at.survey.failures)))

@@ -276,7 +276,7 @@ mod tests {
         let empty = Map { cells: vec![f64::NAN; 6], ..map() };
         assert!(empty.render().unwrap().svg.contains("no data"));
         let flat = Map { cells: vec![2.0; 6], ..map() };
-        assert!(flat.render().unwrap().svg.contains(">2<"));
+        assert!(flat.render().unwrap().svg.contains(">2.0<"));
     }
 
     #[test]
