@@ -40,6 +40,9 @@ mod scenario;
 mod signals;
 mod terminal;
 
+pub use programs::fmu::offer_library;
+pub use scenario::check::{Findings, findings};
+
 use arguments::{Arguments, Command, RunOptions};
 use clap::Parser;
 use springpot::law::Catalog;

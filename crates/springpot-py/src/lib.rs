@@ -18,6 +18,7 @@ mod quantity;
 mod run;
 mod scenario;
 mod simulation;
+mod tools;
 
 use pyo3::prelude::*;
 
@@ -34,5 +35,6 @@ fn _springpot(module: &Bound<'_, PyModule>) -> PyResult<()> {
     quantity::register(module)?;
     run::register(module)?;
     simulation::register(module)?;
+    tools::register(module)?;
     Ok(())
 }

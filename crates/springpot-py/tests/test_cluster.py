@@ -4,6 +4,7 @@ import concurrent.futures
 import json
 import multiprocessing
 import os
+import pickle
 import signal
 import threading
 import time
@@ -233,3 +234,100 @@ def test_ctrl_c_ends_a_sweep_of_workers(tmp_path):
 def test_bad_clients_are_clean_exceptions(words, error):
     with pytest.raises(error):
         sp.sweep(SLIDE, sweep=GRID, **words)
+
+
+class Process:
+    """A future of Ray's kind: a reference to what a task gave or raised."""
+
+    def __init__(self, future):
+        self.future = future
+
+
+class StandIn:
+    """What the module ray has, as far as sweeps ask for it."""
+
+    def __init__(self):
+        self.pool, self.begun, self.puts, self.options = None, 0, 0, []
+
+    def is_initialized(self):
+        return self.pool is not None
+
+    def init(self):
+        self.pool = concurrent.futures.ThreadPoolExecutor(2)
+
+    def cluster_resources(self):
+        return {"CPU": 2.0}
+
+    def put(self, value):
+        self.puts += 1
+        return Process(self.pool.submit(lambda: value))
+
+    def remote(self, **options):
+        self.options.append(options)
+        ray = self
+
+        class Task:
+            def __init__(self, work):
+                self.work = work
+
+            def remote(self, payload, *others):
+                ray.begun += 1
+                fails = ray.begun in (1, 4)
+                return Process(ray.pool.submit(lambda: 1 / 0 if fails else self.work(ray.get(payload), *others)))
+
+        return Task
+
+    def wait(self, references, timeout):
+        return [one for one in references if one.future.done()], [one for one in references if not one.future.done()]
+
+    def get(self, reference, timeout=None):
+        return reference.future.result(timeout)
+
+    def cancel(self, reference):
+        reference.future.cancel()
+
+
+def test_ray_is_a_client():
+    ray = StandIn()
+    run = sp.sweep(SLIDE, sweep=GRID, client=ray, chunk=1)
+    # Two tasks failed, and were sent again; what all share was sent once.
+    assert run == sp.run(SLIDE, sweep=GRID) and ray.begun == 8 and ray.puts == 1 and ray.options[0] == {"max_retries": 0}
+
+
+@pytest.mark.parametrize("has_client", [False, True])
+def test_chosen_columns_come_back_alone(tmp_path, has_client):
+    whole = sp.run(SLIDE, sweep=GRID)
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        client = {"client": pool} if has_client else {}
+        some = sp.sweep(SLIDE, sweep=GRID, columns=["t", "pad.f*"], **client)
+        none = sp.sweep(SLIDE, sweep=GRID, rows=False, **client)
+        with pytest.raises(KeyError, match="no column 'pad.strok'; did you mean 'pad.stroke'"):
+            sp.sweep(SLIDE, sweep=GRID, columns="pad.strok", **client)
+    assert some.columns == ["t", "pad.force"] == list(some.case(3)) and len(some.table()) == 4 and "q.x" not in some
+    assert [np.array_equal(one["pad.force"], other["pad.force"]) for one, other in zip(some, whole)] == 6 * [True]
+    for run in (some, none):
+        assert run.metrics == whole.metrics and run.events == whole.events and run.summary == whole.summary
+        assert run != whole and run == pickle.loads(pickle.dumps(run)) and run.case(0).rows == 101
+        with pytest.raises(KeyError, match="'q.x' was not brought back: name it in `columns`"):
+            run.case(0)["q.x"]
+        with pytest.raises(ValueError, match="some columns were kept alone"):
+            run.save(tmp_path / "run")
+        for page in (run.case(0)._repr_html_(), run._repr_html_(), repr(run)):
+            assert "101" in page or "columns" in page
+    assert none.columns == [] and len(none.case(0)) == 0
+    with pytest.raises(sp.SpringpotError, match="brought none back"):
+        none.table()
+    assert not (tmp_path / "run").exists()
+
+
+def test_little_comes_back_of_large_cases():
+    study = _cluster.Study(SLIDE, {"time.output_step": 1e-4}, [], [])
+    (whole,), (none,) = _cluster.work(study.to_bytes(), [0]), _cluster.work(study.to_bytes(), [0], [])
+    assert len(whole) > 1_000_000 > 100 * len(none)
+
+
+def test_what_cannot_be_chosen_is_refused(tmp_path):
+    with pytest.raises(ValueError, match="what is written has all rows"):
+        sp.sweep(SLIDE, sweep=GRID, columns="t", out=tmp_path / "run")
+    with pytest.raises(ValueError, match="rows=False keeps no columns"):
+        sp.sweep(SLIDE, sweep=GRID, columns="t", rows=False)

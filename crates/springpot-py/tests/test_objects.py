@@ -136,10 +136,41 @@ def test_snapshots_and_series_are_copied(arm: sp.Simulation) -> None:
 
 
 def test_what_is_not_copied_says_what_is(arm: sp.Simulation) -> None:
-    for one in (arm, sp.Bank([sp.law("spring", k=1.0)])):
-        for attempt in (pickle.dumps, copy.copy, copy.deepcopy):
-            with pytest.raises(TypeError, match=r"keep its state\(\)"):
-                attempt(one)
+    bank = sp.Bank([sp.law("spring", k=1.0)])
+    for attempt in (pickle.dumps, copy.copy, copy.deepcopy):
+        with pytest.raises(TypeError, match=r"keep its state\(\)"):
+            attempt(bank)
+    with pytest.raises(TypeError, match=r"must be picklable, functions of a module and no lambdas: .*; its state\(\) is picklable"):
+        pickle.dumps(arm)
+
+
+def hold(t: float, q: Any, v: Any) -> Any:
+    return -10 * q - v
+
+
+def volts(t: float, q: Any, v: Any) -> float:
+    return 1.0 + float(q[0])
+
+
+def test_a_simulation_goes_on_in_a_copy_and_in_another_process() -> None:
+    first = sp.Simulation(ARM, set={"element.strut.alpha": 0.5}, controller=hold, inputs={"strut.u": (volts, "20 ms")}, sample=0.01)
+    first.step_to(0.123)
+    first.set_torque("q1", 0.5)
+    copies = [first.copy(), copy.copy(first), copy.deepcopy(first), pickle.loads(pickle.dumps(first))]
+    copies.append(pickle.loads(pickle.dumps(copies[-1])))
+    assert all(other is not first and (other.t, other.q, other.model.nq) == (first.t, first.q, 1) for other in copies)
+    copies[0].step_to(0.3)
+    assert first.t == 0.123
+    first.step_to(0.3)
+    for other in copies:
+        other.step_to(0.3)
+        assert dict(other.snapshot()) == dict(first.snapshot())
+    moved = sp.Simulation(ARM, motions={"q1": (np.linspace(0, 2, 9), np.linspace(0, 1, 9) ** 2)})
+    moved.step_to(0.5)
+    assert pickle.loads(pickle.dumps(moved)).q == moved.q == moved.copy().q
+    differentiated = sp.Simulation(ARM, sensitivity="element.strut.alpha")
+    differentiated.step_to(0.5)
+    assert np.array_equal(pickle.loads(pickle.dumps(differentiated)).dq, differentiated.dq)
 
 
 def pickled(grid: sp.Run, arm: sp.Simulation) -> dict[str, tuple[Any, bytes]]:

@@ -242,6 +242,17 @@ def runs(folder: Path) -> None:
     designed = found.run(jobs=1)
     table: dict[str, NDArray[Any]] = grid.table()
     files: list[str] = run.save(folder / "run", format="npz", figures=False)
+    back: sp.Run = sp.read(folder / "run")
+    again: sp.Run = sp.sweep(TEXT, sweep={"element.strut.alpha": [0.3, 0.6]}, columns=["t", "strut.*"])
+    none: sp.Run = sp.sweep(TEXT, rows=False)
+    plane: sp.Run = sp.run(TEXT, sweep={"element.strut.alpha": [0.3, 0.6], "element.strut.mu": [5, 10]})
+    cells: sp.Figure = plane.map("max(strut.force)", "alpha", "mu", unit="kN", title="Peaks", y_scale="log", size=("90 mm", 0.06))
+    print(cells, plane.map("metric(largest)", x="element.strut.mu", y="alpha", where={}))
+    found_cases: list[sp.Case] = [grid.case(alpha=0.6), grid.case({"element.strut.alpha": 0.3}), grid.case(name=grid.case(0).name)]
+    asked: dict[str, Any] = back.scenario
+    print(back == run, again.columns, len(none), found_cases, asked["text"])
+    if find_spec("xarray"):
+        print(grid.to_xarray().sizes)
     page: Path = run.view(folder / "view.html", cases=[0], open=False)
     report: Path = run.report(folder / "report.html", other=run, open=False)
     figure: sp.Figure = run.figure("strut.force", "strut.stroke", units={"strut.stroke": "mm"}, size=("90 mm", "60 mm"), legend=False)
@@ -295,6 +306,21 @@ def small_motions() -> None:
     print(answers, sp.modes(scenario, equilibrium=True)["eigenvalues"])
 
 
+def tools(scratch: Path) -> None:
+    findings: list[sp.Finding] = sp.check(TEXT, set={"element.strut.u": 2})
+    for finding in findings:
+        where: tuple[str | None, int | None, int | None] = (finding.path, finding.line, finding.column)
+        print(where, finding.message, finding.help)
+    modulus: sp.Modulus = sp.modulus(TEXT, "strut", amplitude=["1 mm", 0.002], frequencies=[1.0, "10 Hz"])
+    arrays: list[Array] = [modulus.frequency, modulus.storage, modulus.loss, modulus.tan_delta, modulus.cycle]
+    print(arrays, modulus.element, modulus.unit, modulus.amplitude, modulus.complex)
+    try:
+        file: Path = sp.fmu(TEXT, scratch / "arm.fmu", set={"element.strut.alpha": 3})
+        print(file)
+    except sp.ScenarioError as error:
+        print(error.line)
+
+
 def mistakes() -> None:
     warnings.simplefilter("ignore", category=sp.SpringpotWarning)
     try:
@@ -322,4 +348,5 @@ small_motions()
 with tempfile.TemporaryDirectory() as scratch:
     runs(Path(scratch))
     fits(Path(scratch))
+    tools(Path(scratch))
 mistakes()

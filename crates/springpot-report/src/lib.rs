@@ -1,4 +1,4 @@
-//! Figures of Springpot results: curves ([`Plot`]) and robots with their elements ([`RobotDrawing`]), as SVG, PNG and PDF.
+//! Figures of Springpot results: curves ([`Plot`]), coloured cells ([`Map`]) and robots with their elements ([`RobotDrawing`]), as SVG, PNG and PDF.
 //!
 //! The crate takes plain numbers and text and knows nothing of the engine. Every figure is laid out once, in pixels of 1/96 inch
 //! (y downwards), and written three times: as SVG and as PDF with text kept as text, and as PNG at 2.5 pixels per unit (240 dpi). A subset of
@@ -41,7 +41,7 @@ pub mod scene;
 mod surface;
 pub mod vector;
 
-pub use chart::{Axis, Curve, Panel, Plot, Scale};
+pub use chart::{Axis, Curve, Map, MapAxis, Panel, Plot, Scale};
 pub use draw::Drawn;
 pub use mesh::MeshFile;
 pub use robot::{ElementMark, ElementShape, ElementSign, JointKind, JointMark, Link, RobotDrawing, WORLD};
@@ -93,6 +93,14 @@ pub enum ReportError {
         /// Curves asked for, over all panels.
         curves: usize,
         /// Curves allowed.
+        limit: usize,
+    },
+    /// More cells than a map can show.
+    #[error("{cells} cells do not fit into one map (at most {limit}); draw fewer of them")]
+    TooManyCells {
+        /// Cells asked for.
+        cells: usize,
+        /// Cells allowed.
         limit: usize,
     },
     /// Nothing is left for the curves: give the figure more room, or fewer words.

@@ -10,6 +10,7 @@
 //! | [`table`] | results as files: numbers as text, formats, statistics, the folder that holds them |
 //! | [`figures`] | figures from the curves that a run kept, or from any others |
 //! | [`metrics`] | numbers that say how good a run is, at its end and from its results |
+//! | [`modulus`] | an element under a steady sine |
 //! | [`parts`] | a law as its parts: drawn, and as formulas |
 //! | [`linear`] | small motions by name: eigenvalues, linear models and their files |
 //! | [`numbers`] | numbers and counts as a reader wants them |
@@ -46,6 +47,7 @@ pub mod labels;
 pub mod linear;
 mod meshes;
 pub mod metrics;
+pub mod modulus;
 pub mod numbers;
 mod panels;
 pub mod parts;
@@ -73,7 +75,7 @@ pub use follow::{NewRows, News, Tail, Underway};
 pub use planned::Planned;
 pub use prepare::{BeginError, NewRun, Prepared, Surroundings};
 pub use report::{comparison, quoted, report};
-pub use results::{Results, ResultsError, of_other_version};
+pub use results::{Results, ResultsError, Told, of_other_version};
 pub use survey::{Depth, ElementSurvey, Found, Survey};
 pub use table::folder::{COMPARISON_LATEX, COMPARISON_PAGE, REPORT_LATEX, REPORT_PAGE, VIEW_PAGE, latex_figures};
 pub use table::sealed::{SealError, open, seal};

@@ -96,6 +96,8 @@ pub(crate) struct Sweep {
     pub(crate) labels: Vec<String>,
     /// Whether these are names.
     are_names: bool,
+    /// By value, as it was written for each parameter; nothing where that is not told.
+    written: Vec<Vec<String>>,
     /// By parameter, its values as a reader wants them; nothing where only numbers of the rows are known.
     shown: Vec<Vec<String>>,
 }
@@ -126,19 +128,30 @@ impl TryFrom<ReadSweep> for Sweep {
             }
             None if parameters.len() == 1 => {
                 let shown = vec![labels::values(&labels)];
-                Ok(Self { parameters, count, labels, are_names: false, shown })
+                let written = labels.iter().map(|label| vec![label.clone()]).collect();
+                Ok(Self { parameters, count, labels, are_names: false, written, shown })
             }
             _ => {
                 let column =
                     |at| written.iter().map(|row: &Vec<String>| row.get(at).cloned()).collect::<Option<Vec<_>>>();
                 let shown = (0..parameters.len()).map(|at| labels::values(&column(at).unwrap_or_default())).collect();
-                Ok(Self { parameters, count, labels, are_names: names.is_some(), shown })
+                Ok(Self { parameters, count, labels, are_names: names.is_some(), written, shown })
             }
         }
     }
 }
 
 impl Sweep {
+    /// What value number `at` is called, where the scenario says so.
+    pub(crate) fn name(&self, at: usize) -> Option<&String> {
+        self.labels.get(at).filter(|_| self.are_names)
+    }
+
+    /// Value number `at` of its parameter number `k` as it was written, where that is told.
+    pub(crate) fn written(&self, at: usize, k: usize) -> Option<&String> {
+        self.written.get(at)?.get(k)
+    }
+
     /// What it and its values are called: nothing and their names, or its parameters and values as a reader writes them.
     pub(crate) fn words(&self) -> (String, Vec<String>) {
         labels::sweep(self.parameters.iter().map(String::as_str), &self.labels, self.are_names)
@@ -224,7 +237,7 @@ impl Record {
             let count = sweep.count.max(1);
             stride = (stride / count).max(1);
             let at = case.index / stride % count;
-            if let Some(name) = sweep.labels.get(at).filter(|_| sweep.are_names) {
+            if let Some(name) = sweep.name(at) {
                 words.push(name.clone());
                 continue;
             }

@@ -1,5 +1,9 @@
 //! Results of a run that has ended, read again for pages and files.
 
+mod whole;
+
+pub use whole::Told;
+
 use crate::record::{self, Record};
 use crate::table::disk::Disk;
 use crate::table::stored::Stored;
@@ -47,6 +51,9 @@ pub enum ResultsError {
     /// An earlier version wrote them, without what is drawn.
     #[error("the run.json of {} does not say what is drawn: an earlier version wrote it", .0.display())]
     NoScene(PathBuf),
+    /// They are one part of a run.
+    #[error("{} holds one part of a run, and others are elsewhere: put them together with `springpot merge`", .0.display())]
+    Part(PathBuf),
     /// A case that was asked for has no row.
     #[error("case {0} has no row")]
     NoCase(usize),
@@ -85,6 +92,18 @@ impl Results {
     /// # Errors
     /// There are none, or they cannot be read.
     pub fn open(disk: &Disk, folder: &Path) -> Result<Self, ResultsError> {
+        let results = Self::read(disk, folder)?;
+        if results.record.scenes.is_empty() {
+            return Err(ResultsError::NoScene(folder.to_owned()));
+        }
+        Ok(results)
+    }
+
+    /// The same, also where nothing says what is drawn.
+    ///
+    /// # Errors
+    /// There are none, or they cannot be read.
+    pub fn read(disk: &Disk, folder: &Path) -> Result<Self, ResultsError> {
         let failed = |file: &Path, error| ResultsError::File { file: file.to_owned(), error };
         match disk.look(folder) {
             Ok(Some(_)) => {}
@@ -97,9 +116,6 @@ impl Results {
             None => ResultsError::NoRecord(folder.to_owned()),
             Some(why) => ResultsError::Damaged { folder: folder.to_owned(), why },
         })?;
-        if record.scenes.is_empty() {
-            return Err(ResultsError::NoScene(folder.to_owned()));
-        }
         let file = folder.join(record.rows_file());
         let rows = Stored::open(disk, &file).map_err(|error| failed(&file, error))?;
         let swept = record.parameters().count().min(rows.columns().len());

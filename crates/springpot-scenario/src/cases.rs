@@ -27,6 +27,7 @@ use crate::text::document::Node;
 use crate::text::refusal::{Place, RefusalKind, Refusals, Remark};
 use crate::time;
 use crate::units::Unit;
+use serde::{Deserialize, Serialize};
 use springpot::Simulation;
 use springpot::law::Catalog;
 use springpot::system::{Adaptive, RunError, Shared};
@@ -39,7 +40,7 @@ use std::sync::Arc;
 const TRIED: usize = 1_000;
 
 /// A value of a swept parameter, as a column of the results shows it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum SweptValue {
     /// A number or quantity, SI.
     Number(f64),

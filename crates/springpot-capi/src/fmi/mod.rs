@@ -20,6 +20,7 @@
 mod build;
 mod checkpoint;
 mod description;
+mod extension;
 #[allow(unsafe_code)]
 pub mod functions;
 mod guid;
@@ -36,6 +37,7 @@ mod variables;
 mod zip;
 
 pub use checkpoint::Checkpoint;
+pub use extension::without_python;
 pub use instance::{Fault, Instance};
 pub use library::{LIBRARY, PLATFORM, is_this_library};
 pub use mode::Mode;

@@ -4,32 +4,17 @@ use crate::arguments::ModulusOptions;
 use crate::grid::{Grid, Set};
 use crate::{Ending, diagnostic, drawing, frequency, output, printed, terminal};
 use serde_json::json;
-use springpot::law::{Catalog, InputValue, Point};
+use springpot::law::Catalog;
 use springpot_report::{Axis, Curve, Panel, Plot, Scale};
+use springpot_run::modulus::{Modulus, USUAL_AMPLITUDE, moduli, units};
 use springpot_run::numbers::{four, short};
 use springpot_scenario::units::parse_quantity;
 use springpot_scenario::{ElementPlan, ShapePlan, suggest};
-use std::f64::consts::{PI, TAU};
-use std::num::NonZero;
+use std::f64::consts::TAU;
 use std::path::Path;
-
-/// K* at one frequency and amplitude.
-#[derive(Clone, Copy)]
-struct Row {
-    hertz: f64,
-    /// m, or rad.
-    amplitude: f64,
-    storage: f64,
-    loss: f64,
-    /// Energy lost in a cycle of the amplitude, J.
-    cycle: f64,
-}
 
 /// No mount is pressed so far, m.
 const HUGE: f64 = 1.0;
-
-/// The amplitude where none is asked for and none matters, m or rad.
-const USUAL: f64 = 1e-3;
 
 /// What is wrong, and what would be right.
 type Problem = (String, String);
@@ -77,7 +62,7 @@ pub(crate) fn modulus(options: &ModulusOptions, catalog: &Catalog) -> Ending {
     for amplitude in &asked.amplitudes {
         warn_of_amplitude(element, *amplitude);
     }
-    match rows(element, &asked) {
+    match moduli(element, &asked.band, &asked.amplitudes) {
         Ok(rows) => tell(options, element, &rows, &asked),
         Err((message, help)) => {
             diagnostic::error_with_help(message, help);
@@ -103,7 +88,7 @@ fn asked(options: &ModulusOptions, element: &ElementPlan) -> Result<Asked, Probl
             let message = format!("the law of element {name:?} is not linear: its modulus depends on the amplitude");
             return Err((message, format!("write --amplitude '{}', or several: '{}'", examples[0], examples[1])));
         }
-        return Ok(Asked { band, amplitudes: vec![USUAL], written: Vec::new(), is_over_amplitude: false });
+        return Ok(Asked { band, amplitudes: vec![USUAL_AMPLITUDE], written: Vec::new(), is_over_amplitude: false });
     };
     let read = |part: &str| {
         let amplitude = parse_quantity(part, unit, &|_| None).ok().filter(|value| *value > 0.0 && value.is_finite());
@@ -135,40 +120,8 @@ fn warn_of_amplitude(element: &ElementPlan, amplitude: f64) {
     );
 }
 
-/// The rows, amplitudes outermost, worked out on all cores.
-fn rows(element: &ElementPlan, asked: &Asked) -> Result<Vec<Row>, Problem> {
-    let element = &element.element;
-    let mut inputs = vec![InputValue::default(); element.inputs.len()];
-    element.inputs_at(0.0, &mut inputs);
-    let at = Point { t: 0.0, stroke: 0.0, rate: 0.0, inputs: &inputs };
-    let row = |(amplitude, hertz): (f64, f64)| {
-        let modulus = match element.law.is_linear() {
-            true => Some(element.law.complex_modulus(&at, TAU * hertz)),
-            false => element.law.first_harmonic(&at, amplitude, TAU * hertz),
-        };
-        let [storage, loss] = modulus.ok_or_else(|| {
-            let [hertz, amplitude] = [hertz, amplitude].map(short);
-            let message = format!("element {:?} comes to no steady turn at {hertz} Hz and {amplitude}", element.name);
-            (message, "run it under the sine that is meant, and look at the loop".to_owned())
-        })?;
-        Ok(Row { hertz, amplitude, storage, loss, cycle: PI * loss * amplitude * amplitude })
-    };
-    let amplitudes = asked.amplitudes.iter();
-    let wanted: Vec<(f64, f64)> =
-        amplitudes.flat_map(|amplitude| asked.band.iter().map(|hertz| (*amplitude, *hertz))).collect();
-    let cores = std::thread::available_parallelism().map_or(1, NonZero::get);
-    let share = wanted.len().div_ceil(cores);
-    let work = |wanted: &[(f64, f64)]| wanted.iter().map(|one| row(*one)).collect::<Result<Vec<Row>, Problem>>();
-    let work = &work;
-    std::thread::scope(|scope| {
-        let started: Vec<_> = wanted.chunks(share).map(|wanted| scope.spawn(move || work(wanted))).collect();
-        let joined = started.into_iter().map(|share| share.join().unwrap_or_else(|why| std::panic::resume_unwind(why)));
-        Ok(joined.collect::<Result<Vec<_>, Problem>>()?.concat())
-    })
-}
-
 /// Prints the rows, or writes them as the ending of the file says.
-fn tell(options: &ModulusOptions, element: &ElementPlan, rows: &[Row], asked: &Asked) -> Ending {
+fn tell(options: &ModulusOptions, element: &ElementPlan, rows: &[Modulus], asked: &Asked) -> Ending {
     let Some(out) = &options.out else {
         let text = match options.json {
             true => format!("{:#}\n", json(element, rows, asked)),
@@ -192,17 +145,17 @@ fn write(out: &Path, text: &str) -> Ending {
     output::written(out, output::write(out, text.as_bytes()))
 }
 
-/// The unit of K*: N/m, or N·m/rad where the element acts on an angle.
+/// The unit of K*.
 fn unit(element: &ElementPlan) -> &'static str {
-    if element.element.measure.is_rotation() { "N*m/rad" } else { "N/m" }
+    units(element)[1]
 }
 
 /// The unit of its stroke.
 fn stroke_unit(element: &ElementPlan) -> &'static str {
-    if element.element.measure.is_rotation() { "rad" } else { "m" }
+    units(element)[0]
 }
 
-fn table(element: &ElementPlan, rows: &[Row], asked: &Asked) -> String {
+fn table(element: &ElementPlan, rows: &[Modulus], asked: &Asked) -> String {
     let (stroke, unit, is_over) = (stroke_unit(element), unit(element), asked.is_over_amplitude);
     let head = [
         ("f, Hz".to_owned(), Set::Number),
@@ -217,7 +170,7 @@ fn table(element: &ElementPlan, rows: &[Row], asked: &Asked) -> String {
     let mut left_out = String::new();
     for rows in rows.chunks(asked.band.len()) {
         let (printed, of_band) = frequency::printed(rows.len());
-        for Row { hertz, amplitude, storage, loss, cycle } in printed.map(|k| rows[k]) {
+        for Modulus { hertz, amplitude, storage, loss, cycle } in printed.map(|k| rows[k]) {
             let values = [hertz, amplitude, storage, loss, loss / storage, cycle].map(four);
             grid.row(values.into_iter().enumerate().filter(|(k, _)| shown(k)).map(|(_, value)| value).collect());
         }
@@ -236,19 +189,19 @@ fn table(element: &ElementPlan, rows: &[Row], asked: &Asked) -> String {
     text
 }
 
-fn csv(element: &ElementPlan, rows: &[Row], asked: &Asked) -> String {
+fn csv(element: &ElementPlan, rows: &[Modulus], asked: &Asked) -> String {
     let (unit, is_over) = (unit(element), asked.is_over_amplitude);
     let of_amplitude = if is_over { format!("amplitude [{}],", stroke_unit(element)) } else { String::new() };
     let mut text = format!("frequency [Hz],{of_amplitude}storage [{unit}],loss [{unit}],tan_delta,cycle [J]\n");
-    for Row { hertz, amplitude, storage, loss, cycle } in rows {
+    for Modulus { hertz, amplitude, storage, loss, cycle } in rows {
         let of_amplitude = if is_over { format!("{amplitude},") } else { String::new() };
         text.push_str(&format!("{hertz},{of_amplitude}{storage},{loss},{},{cycle}\n", loss / storage));
     }
     text
 }
 
-fn json(element: &ElementPlan, rows: &[Row], asked: &Asked) -> serde_json::Value {
-    let column = |of: fn(&Row) -> f64| rows.iter().map(of).collect::<Vec<_>>();
+fn json(element: &ElementPlan, rows: &[Modulus], asked: &Asked) -> serde_json::Value {
+    let column = |of: fn(&Modulus) -> f64| rows.iter().map(of).collect::<Vec<_>>();
     let amplitude = match asked.is_over_amplitude {
         true => json!(column(|row| row.amplitude)),
         false => json!(asked.amplitudes[0]),
@@ -261,18 +214,18 @@ fn json(element: &ElementPlan, rows: &[Row], asked: &Asked) -> serde_json::Value
 }
 
 /// Storage and loss over the frequency, a curve of each amplitude; over the amplitude where there is one frequency.
-fn plot(element: &ElementPlan, rows: &[Row], asked: &Asked) -> Plot {
+fn plot(element: &ElementPlan, rows: &[Modulus], asked: &Asked) -> Plot {
     let axis = |label: String| Axis { label, scale: Scale::Log, ..Axis::default() };
     let is_of_frequency = asked.band.len() > 1 || asked.amplitudes.len() == 1;
-    let of_x: fn(&Row) -> f64 = if is_of_frequency { |row| row.hertz } else { |row| row.amplitude };
-    let curve = |rows: &[Row], label: String, of: fn(&Row) -> f64| Curve {
+    let of_x: fn(&Modulus) -> f64 = if is_of_frequency { |row| row.hertz } else { |row| row.amplitude };
+    let curve = |rows: &[Modulus], label: String, of: fn(&Modulus) -> f64| Curve {
         label,
         is_marked: !is_of_frequency || rows.len() == 1,
         x: rows.iter().map(of_x).collect(),
         y: rows.iter().map(of).collect(),
         ..Curve::default()
     };
-    let [storage, loss]: [fn(&Row) -> f64; 2] = [|row| row.storage, |row| row.loss];
+    let [storage, loss]: [fn(&Modulus) -> f64; 2] = [|row| row.storage, |row| row.loss];
     let (name, unit, stroke) = (&element.element.name, unit(element).replace('*', "·"), stroke_unit(element));
     let x = match is_of_frequency {
         true => axis("frequency, Hz".to_owned()),
@@ -290,8 +243,8 @@ fn plot(element: &ElementPlan, rows: &[Row], asked: &Asked) -> Plot {
         let y = axis(format!("dynamic stiffness, {unit}"));
         return Plot { title, x, y, panels: vec![Panel { curves, ..Panel::default() }], ..Plot::default() };
     }
-    let panel = |label: &str, of: fn(&Row) -> f64| {
-        let of_one = |(rows, written): (&[Row], &String)| curve(rows, written.clone(), of);
+    let panel = |label: &str, of: fn(&Modulus) -> f64| {
+        let of_one = |(rows, written): (&[Modulus], &String)| curve(rows, written.clone(), of);
         let curves = rows.chunks(asked.band.len()).zip(&asked.written).map(of_one).collect();
         Panel { y: Some(axis(format!("{label}, {unit}"))), curves, ..Panel::default() }
     };

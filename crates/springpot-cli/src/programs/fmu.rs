@@ -8,6 +8,7 @@ use springpot_run::numbers::count;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 pub(crate) fn fmu(options: &FmuOptions, catalog: &Catalog) -> Ending {
     let stem = options.file.file_stem().unwrap_or("scenario".as_ref());
@@ -100,11 +101,20 @@ fn library(named: Option<&Path>, own_laws: &[String]) -> Result<Vec<u8>, Ending>
         diagnostic::error_with_help(message, help.to_owned());
         return Err(Ending::Refused);
     }
-    let mut found = places().into_iter().filter_map(|file| read(&file).ok());
+    let offered = OFFERED.get().and_then(|offer| offer());
+    let mut found = places().into_iter().filter_map(|file| read(&file).ok()).chain(offered);
     found.find(|bytes| is_this_library(bytes)).ok_or_else(|| {
         diagnostic::error_with_help(format!("{LIBRARY}, which goes into the FMU, is not beside this command"), help());
         Ending::Refused
     })
+}
+
+static OFFERED: OnceLock<fn() -> Option<Vec<u8>>> = OnceLock::new();
+
+/// Where `fmu` gets its library from when none stands beside the command: a program that has its functions offers itself.
+pub fn offer_library(offer: fn() -> Option<Vec<u8>>) {
+    // The first one stays: a process has one.
+    let _ = OFFERED.set(offer);
 }
 
 /// A regular file; opening anything else may wait.

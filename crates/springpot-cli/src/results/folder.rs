@@ -44,6 +44,7 @@ fn help(error: &ResultsError) -> String {
             "what a run wrote was changed or damaged since: take it from a copy, or run the scenario again".to_owned()
         }
         ResultsError::NoScene(_) => "run the scenario again".to_owned(),
+        ResultsError::Part(_) => "write springpot merge DIR DIR ... --out DIR".to_owned(),
         ResultsError::NoCase(_) => "cases are counted from 0, as run.json lists them".to_owned(),
         ResultsError::NoRow(_) => "run.json says why each case ended".to_owned(),
         ResultsError::NoColumn { column, .. } => {

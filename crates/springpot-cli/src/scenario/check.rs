@@ -9,8 +9,10 @@ use springpot::law::{Catalog, Entry, Expansion, Heat, Shift, Thermal};
 use springpot::system::{RowTimes, Stop};
 use springpot_run::numbers::{count, short};
 use springpot_run::sweep::Layout;
-use springpot_run::{Depth, Survey, Trouble};
-use springpot_scenario::{Cases, ElementPlan, ParameterPlan, Plan, Refusals, ShapePlan, SignalPlan, json_schema};
+use springpot_run::{Depth, Survey, Trouble, Warning, robot_warnings};
+use springpot_scenario::{
+    Cases, ElementPlan, ParameterPlan, Plan, Refusals, Remark, Scenario, ShapePlan, SignalPlan, json_schema,
+};
 use std::ops::RangeInclusive;
 use std::path::Path;
 
@@ -37,18 +39,29 @@ pub(crate) fn check(options: &CheckOptions, catalog: &Catalog) -> Ending {
     }
 }
 
-/// Prints the plan of the first case, and what is known to fail or deserves a warning in any.
-fn describe(file: &Path, options: &CheckOptions, catalog: &Catalog) -> Result<Ending, Refusals> {
-    let mut scenario = diagnostic::scenario(file, &options.overrides)?;
-    options.sweeps.iter().try_for_each(|assignment| scenario.sweep(assignment))?;
-    options.sensitivity.iter().try_for_each(|paths| scenario.differentiate(paths))?;
-    if scenario.is_of_elements() && options.sweeps.is_empty() {
-        let (lines, warnings) = fit::ahead(&scenario, catalog)?;
-        let ending = if options.quiet { Ending::Done } else { printed(terminal::try_print(&of_data(&lines))) };
-        warnings.into_iter().for_each(|warning| diagnostic::warning(warning, None));
-        return Ok(ending);
+/// A scenario that was looked through.
+struct Looked {
+    /// What is said of its measurements, line by line, and what deserves a warning of them.
+    measured: Vec<(String, String)>,
+    warnings: Vec<String>,
+    /// Nothing where it has elements alone.
+    cases: Option<LookedAt>,
+}
+
+/// Its cases, the first of them, its kinks and jumps, and what is known to fail or deserves a warning in any.
+struct LookedAt {
+    cases: Cases,
+    plan: Plan,
+    switches: u64,
+    survey: Survey,
+}
+
+fn look(scenario: &Scenario, is_swept: bool, catalog: &Catalog) -> Result<Looked, Refusals> {
+    if scenario.is_of_elements() && !is_swept {
+        let (measured, warnings) = fit::ahead(scenario, catalog)?;
+        return Ok(Looked { measured, warnings, cases: None });
     }
-    let measured = scenario.has_data().then(|| fit::ahead(&scenario, catalog)).transpose()?;
+    let measured = scenario.has_data().then(|| fit::ahead(scenario, catalog)).transpose()?;
     let (measured, warnings) = measured.unwrap_or_default();
     let cases = scenario.cases(catalog)?;
     let plan = cases.plan(0)?;
@@ -66,19 +79,52 @@ fn describe(file: &Path, options: &CheckOptions, catalog: &Catalog) -> Result<En
             0
         }),
     };
-    let ending = match options.quiet {
-        true => Ending::Done,
-        false => printed(terminal::try_print(&(text(&cases, &plan, switches, &survey) + &of_data(&measured)))),
-    };
-    warnings.into_iter().for_each(|warning| diagnostic::warning(warning, None));
-    diagnostic::robot_warnings(&cases);
-    starts::warn(&survey, &cases);
-    starts::warn_of_limits(&survey, &cases);
-    failures::tell(&survey, &cases);
+    Ok(Looked { measured, warnings, cases: Some(LookedAt { cases, plan, switches, survey }) })
+}
+
+impl Looked {
+    /// All that deserves a warning, in the order in which it is told.
+    fn remarks(&self) -> Vec<Remark> {
+        let of = |Warning { message, help }| Remark { message, place: None, help };
+        let mut remarks: Vec<Remark> = self.warnings.iter().cloned().map(|warning| of(warning.into())).collect();
+        if let Some(LookedAt { cases, survey, .. }) = &self.cases {
+            remarks.extend(robot_warnings(cases).into_iter().map(of));
+            remarks.extend(starts::remarks(survey, cases));
+            remarks.extend(starts::of_limits(survey, cases));
+        }
+        remarks
+    }
+}
+
+/// What deserves a warning in a scenario, and why cases cannot run, by their index.
+pub type Findings = (Vec<Remark>, Vec<(usize, Trouble)>);
+
+/// What `springpot check` says of a scenario: what deserves a warning, and why cases cannot run, by their index; none where all can.
+///
+/// # Errors
+/// The scenario is refused.
+pub fn findings(scenario: &Scenario, catalog: &Catalog) -> Result<Findings, Refusals> {
+    let looked = look(scenario, false, catalog)?;
+    let remarks = looked.remarks();
+    Ok((remarks, looked.cases.map_or_else(Vec::new, |at| at.survey.failures)))
+}
+
+/// Prints the plan of the first case, and what is known to fail or deserves a warning in any.
+fn describe(file: &Path, options: &CheckOptions, catalog: &Catalog) -> Result<Ending, Refusals> {
+    let mut scenario = diagnostic::scenario(file, &options.overrides)?;
+    options.sweeps.iter().try_for_each(|assignment| scenario.sweep(assignment))?;
+    options.sensitivity.iter().try_for_each(|paths| scenario.differentiate(paths))?;
+    let looked = look(&scenario, !options.sweeps.is_empty(), catalog)?;
+    let described = |at: &LookedAt| text(&at.cases, &at.plan, at.switches, &at.survey);
+    let words = looked.cases.as_ref().map_or_else(String::new, described) + &of_data(&looked.measured);
+    let ending = if options.quiet { Ending::Done } else { printed(terminal::try_print(&words)) };
+    looked.remarks().into_iter().for_each(diagnostic::remark);
+    let Some(LookedAt { cases, survey, .. }) = &looked.cases else { return Ok(ending) };
+    failures::tell(survey, cases);
     Ok(match survey.failures.is_empty() {
         true => ending,
         // As a run of it.
-        false if survey.refused > 0 && survey.is_hopeless(&cases) => Ending::Refused,
+        false if survey.refused > 0 && survey.is_hopeless(cases) => Ending::Refused,
         false => Ending::Failed,
     })
 }

@@ -68,7 +68,7 @@ fn carry_out(
             return Ending::Refused;
         }
         Err(Unprepared::Hopeless(cases, survey)) => {
-            starts::warn(&survey, &cases);
+            starts::remarks(&survey, &cases).into_iter().for_each(diagnostic::remark);
             failures::tell(&survey, &cases);
             terminal::print_error("nothing was run, and earlier results are as they were\n");
             return Ending::Refused;
@@ -82,7 +82,7 @@ fn carry_out(
         Err(Unprepared::Folder(out, error)) => return no_results(&out, error, None),
     };
     if let Some(survey) = &prepared.survey {
-        starts::warn(survey, &prepared.planned.cases);
+        starts::remarks(survey, &prepared.planned.cases).into_iter().for_each(diagnostic::remark);
     }
     let (out, goes_on) = (prepared.folder.path().to_owned(), prepared.checkpoints.is_some());
     if !quiet {

@@ -1,18 +1,19 @@
 //! What is said of a survey: starts that deserve a warning, and cases that cannot run.
 
-use crate::diagnostic;
 use crate::scenario::swept::{NAMED_LIMITS, in_case, in_cases};
 use springpot_run::numbers::{count, short};
 use springpot_run::sweep::CasesPassing;
 use springpot_run::{ElementSurvey, Found, Survey};
 use springpot_scenario::{Cases, Remark};
 
-/// Prints warnings of elements that start far from their rest, or with an infinite force, and of runs shorter than a row.
-pub(crate) fn warn(survey: &Survey, cases: &Cases) {
-    for (index, remark) in &survey.warnings {
+/// Warnings of elements that start far from their rest, or with an infinite force, and of runs shorter than a row.
+pub(crate) fn remarks(survey: &Survey, cases: &Cases) -> Vec<Remark> {
+    let named = |(index, remark): &(usize, Remark)| {
         let message = if *index == 0 { remark.message.clone() } else { in_case(cases, *index, &remark.message) };
-        diagnostic::remark(Remark { message, ..remark.clone() });
-    }
+        Remark { message, ..remark.clone() }
+    };
+    let mut remarks: Vec<Remark> = survey.warnings.iter().map(named).collect();
+    let mut say = |message: String, help: String| remarks.push(Remark { message, place: None, help: Some(help) });
     let placed = |found: &Found, message: &str| in_cases(cases, survey.looked_at, found.index, found.cases, message);
     for ElementSurvey { name, unit, rest_key, large, singular, .. } in &survey.elements {
         if let Some(found) = large {
@@ -24,7 +25,7 @@ pub(crate) fn warn(survey: &Survey, cases: &Cases) {
             );
             let help = "look at rest_length and at the points of from and to, or at the start of the motion; \
                         rest_length = \"start\" makes x(0) = 0";
-            diagnostic::warning(placed(found, &message), Some(help.into()));
+            say(placed(found, &message), help.to_owned());
         }
         if let Some(found) = singular {
             let what = match found.start.infinite {
@@ -39,25 +40,29 @@ pub(crate) fn warn(survey: &Survey, cases: &Cases) {
                 "this says that it jumped there from x = 0; derivative = \"caputo\" says that it was held there before, \
                  past = {{ held = \"1 s\" }} for a while, {rest_key} = \"start\" that x(0) = 0"
             );
-            diagnostic::warning(placed(found, &message), Some(help));
+            say(placed(found, &message), help);
         }
     }
     if let Some([end, step]) = survey.short {
         let message =
             format!("the run ends at {} s, before a row is due: rows come every {} s", short(end), short(step));
         let help = "look at `end` and `output_step` of [time]: are they swapped?";
-        diagnostic::warning(message, Some(help.into()));
+        say(message, help.to_owned());
     }
+    remarks
 }
 
-/// Prints warnings of joints that start beyond their limits.
-pub(crate) fn warn_of_limits(survey: &Survey, cases: &Cases) {
+/// Warnings of joints that start beyond their limits.
+pub(crate) fn of_limits(survey: &Survey, cases: &Cases) -> Vec<Remark> {
     let passing = survey.limits.passing();
-    for CasesPassing { passed, case, cases: found } in passing.iter().take(NAMED_LIMITS) {
-        diagnostic::warning(in_cases(cases, survey.looked_at, *case, *found, &passed.to_string()), None);
-    }
+    let said = |message| Remark { message, place: None, help: None };
+    let named = passing.iter().take(NAMED_LIMITS).map(|CasesPassing { passed, case, cases: found }| {
+        said(in_cases(cases, survey.looked_at, *case, *found, &passed.to_string()))
+    });
+    let mut remarks: Vec<Remark> = named.collect();
     if let Some(more @ 1..) = passing.len().checked_sub(NAMED_LIMITS) {
         let more = count(more, "more limit of a joint is", "more limits of joints are");
-        diagnostic::warning(format!("{more} passed at the start"), None);
+        remarks.push(said(format!("{more} passed at the start")));
     }
+    remarks
 }

@@ -26,8 +26,10 @@ from ._fit import Fit, Parameter, Problem, fit, problem
 from ._gradient import gradient
 from ._law import Master, datasheet, law, laws, master, network, prony
 from ._linear import LinearModel, frequency_response, linearise, modes
+from ._read import read
 from ._regressor import element_regressor
 from ._run import Run, run
+from ._tools import Finding, Modulus, check, fmu, modulus
 from ._springpot import Bank, Law, Model, Prony, Simulation, SimulationState, Snapshot, __version__
 
 _Mapping.register(Snapshot)
@@ -38,11 +40,13 @@ __all__ = [
     "Design",
     "DesignedParameter",
     "Figure",
+    "Finding",
     "Fit",
     "Law",
     "LinearModel",
     "Master",
     "Model",
+    "Modulus",
     "ModelError",
     "Parameter",
     "Problem",
@@ -56,9 +60,11 @@ __all__ = [
     "SpringpotError",
     "SpringpotWarning",
     "__version__",
+    "check",
     "datasheet",
     "design",
     "fit",
+    "fmu",
     "element_regressor",
     "fractional",
     "frequency_response",
@@ -68,9 +74,11 @@ __all__ = [
     "linearise",
     "master",
     "modes",
+    "modulus",
     "network",
     "problem",
     "prony",
+    "read",
     "run",
     "sweep",
     "units",

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from . import _html
 from ._springpot import Case as _Case
-from ._springpot import Study
+from ._springpot import Stored, Study
 from ._tables import unknown
 
 if TYPE_CHECKING:
@@ -22,10 +22,12 @@ Column: TypeAlias = npt.NDArray[np.float64]
 class Case(Mapping[str, Column]):
     """One case of a run: its columns as read-only arrays ``(rows,)``, without a copy; NaN where a cell is empty."""
 
-    def __init__(self, study: Study, case: _Case, units: Mapping[str, str]) -> None:
+    def __init__(self, study: Study | Stored, case: _Case, units: Mapping[str, str]) -> None:
         # The columns of all cases are the same, and asked for once.
         self._study, self._case, self._units = study, case, units
         self._found: dict[str, Column] = {}
+        # Of a sweep that brings some columns back alone the others are known by name.
+        self._held = list(units) if case.is_whole else [name for k, name in enumerate(units) if case.has_column(k)]
 
     @property
     def index(self) -> int:
@@ -111,15 +113,17 @@ class Case(Mapping[str, Column]):
             names = list(self._units)
             if column not in self._units:
                 raise KeyError(unknown("column", column, names))
+            if column not in self._held:
+                raise KeyError(f"column {column!r} was not brought back: name it in `columns` of the sweep")
             found = np.asarray(self._case.column(names.index(column)))
             self._found[column] = found
         return found
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._units)
+        return iter(self._held)
 
     def __len__(self) -> int:
-        return len(self._units)
+        return len(self._held)
 
     def __repr__(self) -> str:
         name = self._study.name(self.index)
@@ -131,13 +135,19 @@ class Case(Mapping[str, Column]):
         return _html.case(self)
 
     def _ipython_key_completions_(self) -> list[str]:
-        return list(self._units)
+        return list(self._held)
 
     def __eq__(self, other: object) -> bool:
         """Whether both have the same parameters and the same numbers, to the bit, under the same names; NaN is equal to NaN."""
         if not isinstance(other, Case):
             return NotImplemented
-        if (self.index, self.parameters, self._units, self.rows) != (other.index, other.parameters, other._units, other.rows):
+        if (self.index, self.parameters, self._units, self.rows, self._held) != (
+            other.index,
+            other.parameters,
+            other._units,
+            other.rows,
+            other._held,
+        ):
             return False
         return str(self.error) == str(other.error) and all(np.array_equal(self[name], other[name], equal_nan=True) for name in self)
 

@@ -1,20 +1,23 @@
-"""Sweeps on other people's workers: Dask, concurrent.futures, MPI, or whatever takes tasks by ``submit``."""
+"""Sweeps on other people's workers: Dask, Ray, concurrent.futures, MPI, or whatever takes tasks by ``submit``."""
 
 from __future__ import annotations
 
 import contextlib
 import os
 from collections.abc import Mapping, Sequence
+from fnmatch import fnmatchcase
 from functools import lru_cache
 from typing import Any, Protocol
 
 from ._errors import RunError, SpringpotError
 from ._futures import Came, Executed, Failed, Remote, Scheduler
 from ._progress import Progress, shown
+from ._ray import RayClient, is_ray
 from ._run import Run, Sweep, _jobs, _warn, checked, run
 from ._scenario import Scenario
 from ._springpot import Case, Study
 from ._sweeps import sweeps_of
+from ._tables import unknown
 
 PATIENCE = 0.1
 """How long a look at a worker takes at most, s."""
@@ -43,15 +46,18 @@ def _study(payload: bytes) -> Study:
     return Study.from_bytes(payload)
 
 
-def work(payload: bytes, indices: Sequence[int]) -> list[bytes]:
-    """Runs cases in a worker."""
-    return [case.to_bytes() for case in _study(payload).cases(list(indices), jobs=1)]
+def work(payload: bytes, indices: Sequence[int], kept: list[int] | None = None) -> list[bytes]:
+    """Runs cases in a worker; of their columns all come back, or those in these places alone."""
+    cases = _study(payload).cases(list(indices), jobs=1)
+    return [(case if kept is None else case.with_columns(kept)).to_bytes() for case in cases]
 
 
 class Gathering:
     """Cases of a study from the workers of a client, asked for in order."""
 
-    def __init__(self, study: Study, client: Client, chunk: int | None, retries: int) -> None:
+    def __init__(self, study: Study, client: Client, chunk: int | None, retries: int, kept: list[int] | None = None) -> None:
+        # What work takes beside the study and the cases.
+        self._more: tuple[Any, ...] = () if kept is None else (kept,)
         self._client, self._retries = client, retries
         self._payload, self._count = study.to_bytes(), len(study)
         workers = _workers(client)
@@ -111,7 +117,7 @@ class Gathering:
 
     def _submit(self, task: int) -> None:
         try:
-            future = self._client.submit(work, self._payload, list(self._indices(task)), **self._words)
+            future = self._client.submit(work, self._payload, list(self._indices(task)), *self._more, **self._words)
         except Exception as error:
             raise RunError(f"the client takes no more work: {error}") from error
         self._tasks[task] = Executed(future) if self._scheduler is None else Remote(self._scheduler, future, self._retries)
@@ -148,6 +154,22 @@ def _workers(client: Client) -> int:
     return known if isinstance(known, int) and known > 0 else os.cpu_count() or 1
 
 
+def _kept(study: Study, columns: str | Sequence[str] | None, rows: bool) -> list[int] | None:
+    """Places of the columns that are wanted; ``None``: all."""
+    if columns is None:
+        return None if rows else []
+    if not rows:
+        raise ValueError("rows=False keeps no columns: leave `columns` out, or rows")
+    names = [name for name, _, _ in study.columns[len(study.parameters) :]]
+    places: list[int] = []
+    for wanted in [columns] if isinstance(columns, str) else columns:
+        found = [k for k, name in enumerate(names) if name == wanted or fnmatchcase(name, wanted)]
+        if not found:
+            raise KeyError(unknown("column", wanted, names))
+        places.extend(found)
+    return sorted(dict.fromkeys(places))
+
+
 def sweep(
     scenario: Scenario,
     set: Mapping[str, Any] | None = None,
@@ -156,7 +178,9 @@ def sweep(
     jobs: int | None = None,
     progress: Progress = None,
     *,
-    client: Client | None = None,
+    columns: str | Sequence[str] | None = None,
+    rows: bool = True,
+    client: Client | Any | None = None,
     chunk: int | None = None,
     retries: int = 3,
     resume: bool = False,
@@ -169,7 +193,10 @@ def sweep(
 
     Args:
         scenario, set, sweep, out, jobs, progress, format, figures: as for :func:`run`.
-        client: a Dask ``Client``, a ``concurrent.futures`` executor, ``mpi4py.futures.MPIPoolExecutor``, or whatever has ``submit(work, *args)``
+        columns: names of the columns that come back from the workers, where ``*`` stands for any text; default all. Metrics, statistics, events and
+            reports come in any case; such a run is not written, and not drawn as a scenario's figures.
+        rows: ``False`` for none of the columns.
+        client: a Dask ``Client``, the module ``ray``, a ``concurrent.futures`` executor, ``mpi4py.futures.MPIPoolExecutor``, or whatever has ``submit(work, *args)``
             and gives futures with ``result(timeout)`` (and ``done()``, if it likes); ``None``: threads here, as :func:`run`.
         chunk: cases in one task; default as many as give every worker sixteen tasks, at most 64.
         retries: how often a task is sent again whose worker failed.
@@ -179,7 +206,12 @@ def sweep(
         RunError: a task failed more than ``retries`` times, the client takes no more work, gave something else than was asked, or lost its
             scheduler for good; with ``out`` what has come is kept for ``resume``.
     """
-    if client is None and not resume:
+    chooses = columns is not None or not rows
+    if chooses and out is not None:
+        raise ValueError("what is written has all rows: leave `out` out, or name the columns in [output] of the scenario")
+    if client is not None and is_ray(client):
+        client = RayClient(client)
+    if client is None and not resume and not chooses:
         return run(scenario, set, sweep, out, jobs, progress, format=format, figures=figures)
     if client is not None and not callable(getattr(client, "submit", None)):
         raise TypeError(f"client has no submit(work, *args): {type(client).__name__}")
@@ -191,13 +223,16 @@ def sweep(
         raise ValueError("resume goes on with a run in a folder: name it by out")
     study = Study(scenario, set, sweeps_of(sweep))
     _warn(study.warnings)
-    gathering = None if client is None else Gathering(study, client, chunk, retries)
+    kept = _kept(study, columns, rows)
+    gathering = None if client is None else Gathering(study, client, chunk, retries, kept)
     try:
         with shown(progress) as told:
             if out is not None:
                 return _written(study, gathering, os.fspath(out), jobs, told, format, figures, resume)
-            assert gathering is not None
             cases: list[Case] = []
+            if gathering is None:
+                whole = study.cases(list(range(len(study))), jobs=_jobs(jobs), progress=told)
+                return checked(Run(study, [case.with_columns(kept or []) for case in whole]))
             for index in range(len(study)):
                 while (case := gathering.get(index, PATIENCE)) is None:
                     pass

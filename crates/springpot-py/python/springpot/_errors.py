@@ -84,6 +84,14 @@ class MissingModelError(ModelError, _MissingFile):
         self.errno, self.filename = errno.ENOENT, filename
 
 
+class MissingResultsError(SpringpotError, _MissingFile):
+    """The folder of results is not there."""
+
+    def __init__(self, message: str = "", *, filename: str | None = None) -> None:
+        super().__init__(message)
+        self.errno, self.filename = errno.ENOENT, filename
+
+
 class RunError(SpringpotError):
     """A run or a simulation cannot go on.
 

@@ -49,7 +49,7 @@ def case(of: Case) -> str:
     if of.error is not None:
         caption += f"; failed: {of.error}"
     statistics = zip(of.units.items(), of.statistics)
-    return table(caption, ["column", "unit", "min", "max", "rms"], ((name, unit, *some) for (name, unit), some in statistics), len(of))
+    return table(caption, ["column", "unit", "min", "max", "rms"], ((name, unit, *some) for (name, unit), some in statistics), len(of.units))
 
 
 def run(of: Run) -> str:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import contextlib
 import csv
+import json
 import os
 import pathlib
+import shutil
 import tempfile
 import warnings as _warnings
 import webbrowser
@@ -17,20 +19,22 @@ import numpy.typing as npt
 
 from . import _html
 from ._case import Case, Column
+from ._chosen import chosen
 from ._errors import RunError, SpringpotError, SpringpotWarning
 from ._figure import Figure, Look, draw, drawn, with_options
 from ._progress import Progress, shown
 from ._scenario import Scenario
-from ._springpot import Study
+from ._springpot import Stored, Study
 from ._springpot import Case as _Case
 from ._springpot import export_bytes, report_page, view_page
 from ._sweeps import sweeps_of
-from ._tables import Metrics, Rows, unknown
+from ._tables import Metrics, Rows, swept_column
 
 if TYPE_CHECKING:
     import matplotlib.axes
     import pandas
     import polars
+    import xarray
 
 Sweep: TypeAlias = "Mapping[str | tuple[str, ...], Any]"
 
@@ -54,7 +58,7 @@ class Run:
     'N'
     """
 
-    def __init__(self, study: Study, cases: Sequence[_Case]) -> None:
+    def __init__(self, study: Study | Stored, cases: Sequence[_Case]) -> None:
         self._study = study
         units = {name: unit for name, unit, _ in study.columns[len(study.parameters) :]}
         self._cases = [Case(study, case, units) for case in cases]
@@ -65,17 +69,34 @@ class Run:
         return self._study.title
 
     @property
+    def scenario(self) -> dict[str, Any]:
+        """What was asked for, as run.json has it: the scenario's ``name`` and ``text``, and what was ``set`` and swept (``sweep``) beside it."""
+        return dict(zip(("name", "text", "set", "sweep"), self._study.scenario))
+
+    @property
     def cases(self) -> list[Case]:
         """All cases, in the order of the grid: the last sweep runs fastest."""
         return list(self._cases)
 
-    def case(self, k: int | str) -> Case:
-        """Case number k, where −1 is the last one, or the one of that name."""
+    def case(self, k: int | str | Mapping[str, Any] | None = None, /, *, name: str | None = None, **values: Any) -> Case:
+        """Case number k, where −1 is the last one, the one of that name, or the one with these swept values.
+
+        Values are named by swept paths, or by the last part of one where no other ends so: ``run.case(alpha=0.5)``,
+        ``run.case({"element.strut.alpha": 0.5, "T": "40 degC"})``. They are numbers in SI units, texts with a unit, or the texts that were swept; numbers
+        need to be equal but for rounding.
+
+        Raises:
+            IndexError: there is no case of that number.
+            KeyError: no path, no case or several ones are meant; the message says what is there.
+        """
+        if isinstance(k, Mapping):
+            values, k = {**k, **values}, None
         if isinstance(k, str):
-            named = {case.name: case for case in self._cases}
-            if k not in named:
-                raise KeyError(unknown("case", k, list(named)))
-            return named[k]
+            name, k = (k, None) if name is None else (name, k)
+        if k is None or isinstance(k, str):
+            return chosen(self._cases, {path: self.units[path] for path in self._swept}, values, name)
+        if name is not None or values:
+            raise TypeError("a case is chosen by its number, or by its name and swept values")
         try:
             return self._cases[k]
         except IndexError:
@@ -94,7 +115,8 @@ class Run:
     @property
     def columns(self) -> list[str]:
         """Names of the columns, without those of swept parameters."""
-        return [name for name, _, _ in self._study.columns[len(self._swept) :]]
+        names = [name for name, _, _ in self._study.columns[len(self._swept) :]]
+        return [name for name in names if name in self._cases[0]._held] if self._cases else names
 
     def sensitivity(self, column: str, parameter: str | None = None) -> Column:
         """The derivative ``(rows,)`` of a column of the only case by a parameter, or ``(rows, P)`` by all of :attr:`parameters`."""
@@ -203,13 +225,11 @@ class Run:
     def table(self) -> dict[str, npt.NDArray[Any]]:
         """All rows of all cases by column, swept parameters first, as results.csv has them."""
         table: dict[str, npt.NDArray[Any]] = {}
+        if not self.columns:
+            raise SpringpotError("the run has no rows: its sweep brought none back")
         swept = [self._study.values(case.index) for case in self._cases]
         for k, parameter in enumerate(self._swept):
-            values = [row[k] for row in swept]
-            if any(isinstance(value, str) for value in values):
-                # One type for a column: numbers beside texts are the texts that they are in results.csv.
-                values = [value if isinstance(value, str) else repr(value).removesuffix(".0") for value in values]
-            table[parameter] = np.repeat(np.asarray(values), [case._case.rows for case in self._cases])
+            table[parameter] = np.repeat(swept_column([row[k] for row in swept]), [case._case.rows for case in self._cases])
         for column in self.columns:
             parts = [case[column] for case in self._cases]
             table[column] = parts[0] if len(parts) == 1 else np.concatenate(parts)
@@ -229,12 +249,27 @@ class Run:
 
         return polars.DataFrame(self.table())
 
+    def to_xarray(self) -> xarray.Dataset:
+        """All columns as a data set of xarray, over the sweeps and time.
+
+        A sweep is a dimension, called as the last part of its path, with the swept values as its coordinate and, where they have names, these as
+        ``NAME_name``; paths that move together share one. Units and meanings are ``attrs``, metrics variables ``metric(NAME)``. Cases that have fewer rows
+        (they failed, an event ended them) end in NaN; where times differ beyond that, rows are the dimension ``row`` and ``t`` is a coordinate over all.
+        """
+        from ._xarray import dataset
+
+        return dataset(self)
+
     def save(
-        self, out: str | os.PathLike[str], *, format: str = "csv", figures: bool = True
+        self, out: str | os.PathLike[str], *, format: str | None = None, figures: bool = True
     ) -> list[str]:
         """Writes the folder that the command ``springpot run`` writes: rows (``"csv"``, ``"parquet"`` or ``"npz"``), statistics, metrics,
-        events, figures and run.json. Gives the names of the files."""
-        told = self._study.write(os.fspath(out), cases=[case._case for case in self._cases], format=format, figures=figures)
+        events, figures and run.json. Gives the names of the files.
+
+        ``format``: default ``"csv"``; results that were read are copied with the format that they have."""
+        if isinstance(self._study, Stored):
+            return _copied(self._study, pathlib.Path(out), format, figures)
+        told = self._study.write(os.fspath(out), cases=[case._case for case in self._cases], format=format or "csv", figures=figures)
         _warn(told["warnings"])
         files: list[str] = told["files"]
         return files
@@ -276,11 +311,20 @@ class Run:
         return notes
 
     @contextlib.contextmanager
-    def _saved(self, figures: bool, name: str = "run") -> Iterator[str]:
-        """Its results in a folder for a while."""
+    def _saved(self, figures: bool, name: str = "run", rows: str | None = None) -> Iterator[str]:
+        """Its results in a folder for a while, with rows in that format where one is wanted."""
+        study = self._study
+        if isinstance(study, Stored) and rows in (None, study.format):
+            yield study.folder
+            return
         with tempfile.TemporaryDirectory(prefix="springpot-") as place:
             folder = os.path.join(place, name)
-            self._study.write(folder, cases=[case._case for case in self._cases], format="csv", figures=figures)
+            if isinstance(study, Stored):
+                shutil.copytree(study.folder, folder, ignore=lambda _, names: [one for one in names if one not in _TEXTS])
+                study.write_rows(os.path.join(folder, "results.csv"))
+                yield folder
+                return
+            study.write(folder, cases=[case._case for case in self._cases], format="csv", figures=figures)
             yield folder
 
     @with_options
@@ -305,8 +349,34 @@ class Run:
             TypeError: there is no such option, or it is neither a text nor a pair.
         """
         wanted = [y] if isinstance(y, str) else list(y)
-        with self._saved(figures=False) as folder:
+        with self._saved(figures=False, rows="csv") as folder:
             return draw(folder, wanted, x=x, where=where, units=units, title=title, look=look)
+
+    def map(
+        self,
+        z: str,
+        x: str,
+        y: str,
+        *,
+        where: Mapping[str, Any] | None = None,
+        unit: str | None = None,
+        title: str | None = None,
+        x_scale: str = "linear",
+        y_scale: str = "linear",
+        size: Sequence[str | float] | None = None,
+    ) -> Figure:
+        """Draws a number of every case over two swept values in coloured cells with a bar, as figures of the kind ``"map"`` are drawn.
+
+        ``z``: ``"metric(NAME)"``, or a statistic such as ``"max(strut.force)"`` (min, max, mean, rms, final), in ``unit``. ``x``, ``y``: swept paths, or their
+        last parts where these tell them apart. ``where``: the value of every other sweep, by path. Cells of cases that failed are empty.
+
+        Raises:
+            KeyError: no such path, column or metric.
+            ValueError: paths that are swept together, a sweep that is left open, a unit or a scale that does not fit.
+        """
+        from ._map import drawn
+
+        return drawn(self, z, x, y, where or {}, unit, title, (x_scale, y_scale), size)
 
     def figures(self) -> dict[str, Figure]:
         """The figures of the scenario, by their names, as ``springpot run`` draws them."""
@@ -323,6 +393,24 @@ class Run:
         from ._plot import plot
 
         return plot(self, [y] if isinstance(y, str) else list(y), x, cases, ax)
+
+
+_TEXTS = ("run.json", "metrics.csv", "summary.csv", "events.csv")
+"""What a figure of results needs beside their rows."""
+
+
+def _copied(study: Stored, out: pathlib.Path, format: str | None, figures: bool) -> list[str]:
+    """The files of results that were read, in another folder."""
+    if format not in (None, study.format):
+        raise ValueError(f"the rows of {study.folder} are {study.format!r}: results that were read are copied as they are, not as {format!r}")
+    if out.exists() and any(out.iterdir()):
+        raise SpringpotError(f"{out} is not empty: results that were read are copied into a new folder")
+    with open(os.path.join(study.folder, "run.json"), encoding="utf-8") as record:
+        files = [name for name in json.load(record)["files"] if figures or not name.startswith("figures/")]
+    for name in files:
+        (out / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(os.path.join(study.folder, name), out / name)
+    return files
 
 
 def _page(html: str, name: str, out: str | os.PathLike[str] | None, show: bool | None) -> pathlib.Path:

@@ -23,6 +23,13 @@ def unknown(what: str, name: object, names: Sequence[str]) -> str:
     return f"no {what} {name!r}; there {'is' if len(names) == 1 else 'are'} {', '.join(names) or 'none'}"
 
 
+def swept_column(values: Sequence[float | str]) -> npt.NDArray[Any]:
+    """Swept values as a column: numbers beside texts are the texts that they are in results.csv, so that it has one type."""
+    if any(isinstance(value, str) for value in values):
+        values = [value if isinstance(value, str) else repr(value).removesuffix(".0") for value in values]
+    return np.asarray(values)
+
+
 class Rows(Sequence[dict[str, Any]]):
     """Rows as dicts; a name in the place of an index gives a column as an array ``(rows,)``."""
 

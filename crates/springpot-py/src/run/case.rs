@@ -37,7 +37,7 @@ impl Case {
     /// Number of rows.
     #[getter]
     fn rows(&self) -> usize {
-        self.0.columns().and_then(<[Vec<f64>]>::first).map_or(0, Vec::len)
+        self.0.report().rows as usize
     }
 
     /// The column number `k`, behind those of swept parameters.
@@ -48,6 +48,23 @@ impl Case {
         } else {
             Err(value_error(format!("column {k} of {count}")))
         }
+    }
+
+    /// The same with these of its columns alone.
+    fn with_columns(&self, kept: Vec<usize>) -> Self {
+        Self(Arc::new(self.0.with_columns(&kept)))
+    }
+
+    /// Whether it has all of its columns.
+    #[getter]
+    fn is_whole(&self) -> bool {
+        self.0.is_whole()
+    }
+
+    /// Whether it has the column number `k`.
+    fn has_column(&self, k: usize) -> bool {
+        let column = self.0.columns().and_then(|columns| columns.get(k));
+        column.is_some_and(|column| column.len() as u64 == self.0.report().rows)
     }
 
     /// Why it failed, as a `RunError`; `None` where it did not.

@@ -4,6 +4,7 @@ mod case;
 mod design;
 mod pages;
 mod source;
+mod stored;
 mod study;
 
 use pyo3::prelude::*;
@@ -11,6 +12,7 @@ use pyo3::prelude::*;
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<case::Case>()?;
     module.add_class::<case::Column>()?;
+    module.add_class::<stored::Stored>()?;
     module.add_class::<study::Study>()?;
     module.add_function(wrap_pyfunction!(design::designed, module)?)?;
     pages::register(module)

@@ -2,6 +2,7 @@
 
 use crate::error::{springpot_error, value_error};
 use pyo3::prelude::*;
+use springpot_report::{Map, MapAxis, Scale};
 use springpot_run::figures::{AskedFigure, NotDrawn};
 use springpot_run::table::disk::Disk;
 use springpot_run::{ExportError, ExportFormat, Results};
@@ -91,10 +92,37 @@ fn plot_figure(
     Ok((drawn.svg, drawn.png, drawn.pdf, drawn.remarks))
 }
 
+/// Label, values, what they are called, whether the scale is logarithmic.
+type Side = (String, Vec<f64>, Vec<String>, bool);
+
+/// The figure of cells over two axes, the first row first; `size` in mm.
+#[pyfunction]
+#[pyo3(signature = (title, x, y, z, cells, size = None))]
+fn map_figure(
+    py: Python<'_>,
+    title: Option<String>,
+    x: Side,
+    y: Side,
+    z: String,
+    cells: Vec<f64>,
+    size: Option<[f64; 2]>,
+) -> PyResult<Drawn> {
+    let side = |(label, values, names, is_log): Side| MapAxis {
+        label,
+        values,
+        names,
+        scale: if is_log { Scale::Log } else { Scale::Linear },
+    };
+    let map = Map { title, x: side(x), y: side(y), z, cells, size };
+    let drawn = py.detach(|| map.render()).map_err(value_error)?;
+    Ok((drawn.svg, drawn.png, drawn.pdf, drawn.remarks))
+}
+
 pub(super) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(view_page, module)?)?;
     module.add_function(wrap_pyfunction!(report_page, module)?)?;
     module.add_function(wrap_pyfunction!(export_bytes, module)?)?;
     module.add_function(wrap_pyfunction!(look_options, module)?)?;
+    module.add_function(wrap_pyfunction!(map_figure, module)?)?;
     module.add_function(wrap_pyfunction!(plot_figure, module)?)
 }

@@ -1,6 +1,7 @@
 //! Where the cases of a run that is written come from.
 
 use super::case::Case;
+use crate::error::value_error;
 use pyo3::prelude::*;
 use springpot::system::Stop;
 use springpot_run::sweep::{Parcel, Progress, Source};
@@ -55,7 +56,8 @@ impl Source for Called {
                 if given.is_none() {
                     return Ok(None);
                 }
-                Ok(Some(given.cast::<Case>()?.get().0.clone()))
+                let parcel = given.cast::<Case>()?.get().0.clone();
+                if parcel.is_whole() { Ok(Some(parcel)) } else { Err(value_error("a case without all of its rows")) }
             })
         };
         loop {

@@ -72,6 +72,13 @@ impl Study {
         self.planned.plan.title.as_deref()
     }
 
+    /// Name and text of the scenario, and what was set and swept beside it.
+    #[getter]
+    fn scenario(&self) -> (String, String, Vec<String>, Vec<String>) {
+        let Asked { name, text, overrides, sweeps, .. } = self.asked.clone();
+        (name, text, overrides, sweeps)
+    }
+
     /// What deserves a warning, each with what to do about it.
     #[getter]
     fn warnings(&self) -> Vec<(String, Option<String>)> {
@@ -82,6 +89,17 @@ impl Study {
     #[getter]
     fn parameters(&self) -> Vec<String> {
         self.planned.cases.parameters().to_vec()
+    }
+
+    /// By sweep the paths that move together, the number of its values, and what they are called where they have names.
+    #[getter]
+    fn axes(&self) -> Vec<(Vec<String>, usize, Option<Vec<String>>)> {
+        let cases = &self.planned.cases;
+        let axis = |axis: usize| {
+            let paths = cases.axis_parameters(axis).map(str::to_owned).collect();
+            (paths, cases.axis_len(axis), cases.axis_names(axis).map(<[String]>::to_vec))
+        };
+        (0..cases.axis_count()).map(axis).collect()
     }
 
     /// Name, paths, value and unit of what the first case is differentiated by.
@@ -122,7 +140,8 @@ impl Study {
     /// Names and columns of events.csv behind the swept parameters.
     #[getter]
     fn event_columns(&self) -> Vec<String> {
-        self.planned.plan.columns().into_iter().map(|column| column.name).collect()
+        let layout = &self.planned.layout;
+        layout.event_columns().into_iter().skip(layout.swept() + 1).map(|column| column.name).collect()
     }
 
     /// Name, column and unit of every metric.
@@ -290,6 +309,9 @@ impl Study {
         let mut known = vec![None; self.planned.cases.len()];
         for case in cases.extract::<Vec<Py<Case>>>()? {
             let parcel = case.get().0.clone();
+            if !parcel.is_whole() {
+                return Err(value_error("of the cases some columns were kept alone: nothing is written of them"));
+            }
             let place = known.get_mut(parcel.index()).ok_or_else(|| value_error("a case of another study"))?;
             *place = Some(parcel);
         }

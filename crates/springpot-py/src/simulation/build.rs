@@ -6,7 +6,7 @@ use super::{Inner, PySimulation, failed};
 use crate::array::numbers;
 use crate::error::{scenario_error, type_error, value_error};
 use crate::interrupt::interruptible;
-use crate::model::{PyModel, origin::Origin};
+use crate::model::{PyModel, origin::Origin as ModelOrigin};
 use crate::quantity::number;
 use crate::scenario::{CATALOG, asked as scenario_asked};
 use numpy::{PyArrayMethods, PyUntypedArrayMethods};
@@ -17,6 +17,7 @@ use springpot::actuation::Drive;
 use springpot::motion::{JointPath, Trajectory};
 use springpot::signal::Signal;
 use springpot::system::{Motion, RunError, System};
+use springpot_run::Asked as Origin;
 use springpot_scenario::{Plan, RobotPlan, suggest};
 use std::sync::{Arc, Mutex};
 
@@ -35,6 +36,35 @@ pub(super) struct Asked<'a, 'py> {
     pub(super) sensitivity: Option<&'a Bound<'py, PyAny>>,
 }
 
+impl<'py> Asked<'_, 'py> {
+    /// What the caller wants, by its words.
+    fn words(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let words = PyDict::new(py);
+        words.set_item("controller", &self.controller)?;
+        words.set_item("inputs", self.inputs)?;
+        words.set_item("motions", self.motions)?;
+        words.set_item("sample", self.sample)?;
+        words.set_item("motion_step", self.motion_step)?;
+        Ok(words)
+    }
+}
+
+/// The same simulation at its start once more, of what [`Asked::words`] gave.
+pub(super) fn again(py: Python<'_>, origin: Origin, words: &Bound<'_, PyDict>) -> PyResult<PySimulation> {
+    let word = |name: &str| Ok::<_, PyErr>(words.get_item(name)?.filter(|word| !word.is_none()));
+    let (inputs, motions) = (word("inputs")?, word("motions")?);
+    let (sample, motion_step) = (word("sample")?, word("motion_step")?);
+    let asked = Asked {
+        controller: word("controller")?,
+        inputs: inputs.as_ref().map(|inputs| inputs.cast()).transpose()?,
+        motions: motions.as_ref().map(|motions| motions.cast()).transpose()?,
+        sample: sample.as_ref(),
+        motion_step: motion_step.as_ref(),
+        sensitivity: None,
+    };
+    of(py, origin, &asked)
+}
+
 pub(super) fn build(
     py: Python<'_>,
     scenario: &Bound<'_, PyAny>,
@@ -48,6 +78,11 @@ pub(super) fn build(
             Err(_) => by.extract()?,
         };
     }
+    of(py, origin, asked)
+}
+
+/// A simulation of a scenario that says by what it is differentiated.
+fn of(py: Python<'_>, origin: Origin, asked: &Asked<'_, '_>) -> PyResult<PySimulation> {
     let scenario = origin.scenario().map_err(|refusals| scenario_error(py, &refusals))?.without_sweeps();
     let plan = interruptible(py, |_| scenario.cases(&CATALOG).and_then(|cases| cases.plan(0)))?;
     let plan = plan.map_err(|refusals| scenario_error(py, &refusals))?;
@@ -98,7 +133,9 @@ pub(super) fn build(
     };
     let (columns, quantities) = Columns::new(&system.observables());
     Ok(PySimulation {
-        robot: Py::new(py, PyModel::of(py, robot, Origin::Scenario(origin))?)?,
+        words: asked.words(py)?.unbind(),
+        robot: Py::new(py, PyModel::of(py, robot, ModelOrigin::Scenario(origin.clone()))?)?,
+        origin,
         columns: Arc::new(columns),
         quantities,
         parameters,

@@ -12,15 +12,17 @@ use self::state::PyState;
 use crate::array::{Rows, numbers};
 use crate::error::{guarded, run_error, run_error_at, type_error, value_error};
 use crate::model::PyModel;
+use crate::pickle;
 use crate::quantity::number;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::gc::{PyTraverseError, PyVisit};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyString};
+use pyo3::types::{PyBytes, PyDict, PyString};
 use springpot::Simulation;
 use springpot::model::Model;
 use springpot::observe::Quantity;
 use springpot::system::RunError;
+use springpot_run::Asked;
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -76,6 +78,9 @@ pub(crate) struct PySimulation {
     inner: Mutex<Inner>,
     model: Arc<Model>,
     robot: Py<PyModel>,
+    /// The scenario, and the callables and other words that it was made with.
+    origin: Asked,
+    words: Py<PyDict>,
     columns: Arc<Columns>,
     /// How the values of the columns are found.
     quantities: Vec<Quantity>,
@@ -84,6 +89,12 @@ pub(crate) struct PySimulation {
     parameters: Vec<String>,
     end: f64,
 }
+
+/// What the bytes of its scenario begin with.
+const TAG: &str = "springpot simulation 1\n";
+
+/// What a pickle holds: the scenario, what else it was made with, and where it is.
+type Parts<'py> = (Bound<'py, PyBytes>, Bound<'py, PyDict>, Py<PyState>);
 
 /// What one caller at a time works with.
 struct Inner {
@@ -354,10 +365,40 @@ impl PySimulation {
         self.with(py, |inner| Ok(inner.simulation.stopped_by().map(|event| event.name.clone())))
     }
 
-    fn __reduce__(&self) -> PyResult<()> {
-        Err(type_error(
-            "a simulation is not copied: keep its state(), and give it to set_state() of one of the same scenario and callables",
-        ))
+    /// Another one of the same scenario, values and callables, where this one is; they go on apart, but for what callables keep.
+    fn copy(&self, py: Python<'_>) -> PyResult<Self> {
+        let state = self.state(py)?;
+        let other = guarded(py, || build::again(py, self.origin.clone(), self.words.bind(py)))?;
+        other.set_state(py, &state)?;
+        Ok(other)
+    }
+
+    fn __copy__(&self, py: Python<'_>) -> PyResult<Self> {
+        self.copy(py)
+    }
+
+    fn __deepcopy__(&self, py: Python<'_>, _memo: &Bound<'_, PyAny>) -> PyResult<Self> {
+        self.copy(py)
+    }
+
+    /// What `__reduce__` made.
+    #[staticmethod]
+    fn _from_parts(py: Python<'_>, origin: &[u8], words: &Bound<'_, PyDict>, state: &PyState) -> PyResult<Self> {
+        let origin = pickle::of_bytes(TAG, "simulation", origin)?;
+        let simulation = guarded(py, || build::again(py, origin, words))?;
+        simulation.set_state(py, state)?;
+        Ok(simulation)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Parts<'py>)> {
+        let words = self.words.bind(py).clone();
+        if let Err(error) = py.import("pickle")?.call_method1("dumps", (&words,)) {
+            let what = "what a simulation asks (controller, inputs, motions) must be picklable, functions of a module and no lambdas";
+            return Err(type_error(format!("{what}: {error}; its state() is picklable in any case")));
+        }
+        let state = Py::new(py, self.state(py)?)?;
+        let origin = pickle::to_bytes(py, TAG, &self.origin)?;
+        Ok((py.get_type::<Self>().getattr("_from_parts")?, (origin, words, state)))
     }
 
     fn __repr__(&self) -> String {
@@ -371,6 +412,7 @@ impl PySimulation {
     fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
         // One at work is held by its caller.
         let Ok(inner) = self.inner.try_lock() else { return Ok(()) };
+        visit.call(&self.words)?;
         inner.callbacks.iter().try_for_each(|callback| visit.call(&callback.function))
     }
 

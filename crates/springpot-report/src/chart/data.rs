@@ -150,6 +150,14 @@ pub(super) fn y_ranges(panels: &[Reach<'_>], axes: &[&super::Axis], x: Range) ->
     (ranges.collect(), axes.iter().zip(&shared).map(|(axis, shared)| *shared || axis.range.is_some()).collect())
 }
 
+/// From the lowest to the highest finite number of the cells of a map; somewhat wider where they are one, nothing where there is none.
+pub(super) fn bar_range(cells: &[f64]) -> Option<Range> {
+    let (lo, hi) = extent(cells.iter().copied().filter(|cell| cell.abs() <= LARGEST))?;
+    let is_flat = hi - lo <= FLAT * lo.abs().max(hi.abs());
+    let (lo, hi) = if is_flat { widen((lo, hi), 0.0) } else { (lo, hi) };
+    Some(Range { lo, hi, scale: Scale::Linear })
+}
+
 /// Lowest and highest of some numbers.
 type Extent = (f64, f64);
 

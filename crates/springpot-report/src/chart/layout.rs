@@ -10,14 +10,14 @@ use super::{Axis, Panel, Plot, style};
 use crate::draw::{Font, Scene, Stroke, wrap_evenly};
 use crate::{PIXELS_PER_MM, ReportError, WIDTH};
 
-const TITLE_SIZE: f64 = 15.0;
-const TITLE_LINE: f64 = 20.0;
-const LABEL_SIZE: f64 = 13.0;
-const LABEL_LINE: f64 = 17.0;
+pub(super) const TITLE_SIZE: f64 = 15.0;
+pub(super) const TITLE_LINE: f64 = 20.0;
+pub(super) const LABEL_SIZE: f64 = 13.0;
+pub(super) const LABEL_LINE: f64 = 17.0;
 const PANEL_TITLE_SIZE: f64 = 12.5;
 const PANEL_TITLE_LINE: f64 = 17.0;
 /// Blank around the figure.
-const BORDER: f64 = 10.0;
+pub(super) const BORDER: f64 = 10.0;
 /// Blank between panels and legend, and below the panels.
 const LEGEND_GAP: f64 = 18.0;
 const LEGEND_ROW: f64 = 10.0;
@@ -30,7 +30,7 @@ const WIDE: f64 = 140.0;
 const FULL_SIZE: f64 = 110.0;
 const SMALLEST: f64 = 0.8;
 /// The highest data area of a page without a height.
-const HIGHEST: f64 = 290.0;
+pub(super) const HIGHEST: f64 = 290.0;
 
 /// Columns of the grid of so many panels.
 fn columns(panels: usize) -> usize {
@@ -39,6 +39,28 @@ fn columns(panels: usize) -> usize {
         2 | 4 => 2,
         3 | 5..=9 => 3,
         _ => 4,
+    }
+}
+
+/// A page as it is laid out, pixels: so many times as large as the paper.
+pub(super) struct Page {
+    pub(super) width: f64,
+    pub(super) height: Option<f64>,
+    shrunk: f64,
+}
+
+impl Page {
+    /// Of a size in mm.
+    pub(super) fn new(size: Option<[f64; 2]>) -> Self {
+        let width = size.map_or(WIDTH, |[width, _]| width);
+        let shrunk = 1.0 / (width / FULL_SIZE).clamp(SMALLEST, 1.0);
+        let height = size.map(|[_, height]| height * PIXELS_PER_MM * shrunk);
+        Self { width: width * PIXELS_PER_MM * shrunk, height, shrunk }
+    }
+
+    /// Width of the paper, where it is another one.
+    pub(super) fn paper_width(&self) -> Option<f64> {
+        (self.shrunk > 1.0).then_some(self.width / self.shrunk)
     }
 }
 
@@ -184,10 +206,7 @@ impl<'a> Layout<'a> {
             data::y_ranges(&[Reach { runs: whole, group: 0 }], &[axis], x).0.pop().flatten()
         });
         let columns = plot.columns.unwrap_or(columns(panels.len())).clamp(1, panels.len());
-        let width = plot.size.map_or(WIDTH, |[width, _]| width);
-        let shrunk = 1.0 / (width / FULL_SIZE).clamp(SMALLEST, 1.0);
-        let page_width = width * PIXELS_PER_MM * shrunk;
-        let page_height = plot.size.map(|[_, height]| height * PIXELS_PER_MM * shrunk);
+        let Page { width: page_width, height: page_height, shrunk } = Page::new(plot.size);
         let title = plot.title.as_deref().filter(|title| !title.is_empty());
         Self {
             plot,

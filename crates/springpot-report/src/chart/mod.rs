@@ -6,8 +6,11 @@ mod data;
 mod decimate;
 mod layout;
 mod legend;
+mod map;
 mod style;
 mod ticks;
+
+pub use map::{Map, MapAxis};
 
 use crate::{Drawn, Rendered, ReportError, draw};
 

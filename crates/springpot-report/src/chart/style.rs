@@ -91,7 +91,8 @@ pub(super) fn points(k: usize) -> Stroke {
 /// Of further points, told apart by how light they are.
 const GREYS: [Color; 3] = [Color(0x8a, 0x8a, 0x8a), Color(0x5c, 0x5c, 0x5c), Color(0xb0, 0xb0, 0xb0)];
 
-fn plasma(place: f64) -> Color {
+/// From dark to light, 0 … 1.
+pub(super) fn plasma(place: f64) -> Color {
     let at = place * LIGHTEST;
     let i = (at.floor() as usize).min(PLASMA.len() - 2);
     let (a, b, t) = (PLASMA[i], PLASMA[i + 1], at - i as f64);

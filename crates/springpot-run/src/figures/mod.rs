@@ -4,6 +4,7 @@
 
 mod curves;
 mod later;
+mod map;
 mod robot;
 mod source;
 mod summary;
@@ -78,6 +79,7 @@ fn files(source: &Source<'_>) -> Result<Files, String> {
     let drawn = match source.figure.kind {
         FigureKind::Curves { .. } => curves::draw(source),
         FigureKind::Summary { .. } => summary::draw(source),
+        FigureKind::Map { .. } => map::draw(source),
         FigureKind::Robot => robot::draw(source),
     }?;
     let written = |format: &FigureFormat| {

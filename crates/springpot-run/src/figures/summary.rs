@@ -12,14 +12,17 @@ pub(super) fn draw(source: &Source<'_>) -> Result<Drawn, String> {
     let mut cases = CasesOver::default();
     for &index in &data.cases {
         let x = over.values[source.cases.position(index)[over.axis]];
-        let ended = source.ended(index);
-        let number = |total: &FigureTotal| ended.and_then(|case| value(total.what, case)).unwrap_or(f64::NAN);
-        let numbers: Vec<f64> = data.totals.iter().map(number).collect();
+        let numbers: Vec<f64> = data.totals.iter().map(|total| number(source, index, total)).collect();
         cases.take(None, sweeps.values(source.cases, index), x, &numbers);
     }
     let y: Vec<FigureColumn> = data.totals.iter().map(|total| total.y.clone()).collect();
     let plot = cases.plot(source.figure.title.as_deref(), &over.column, &y, &data.look);
     plot.draw().map_err(|error| error.to_string())
+}
+
+/// A number of a case; NaN where it did not come to its end, or has none.
+pub(super) fn number(source: &Source<'_>, index: usize, total: &FigureTotal) -> f64 {
+    source.ended(index).and_then(|case| value(total.what, case)).unwrap_or(f64::NAN)
 }
 
 fn value(what: Total, case: &CaseResult) -> Option<f64> {

@@ -137,7 +137,7 @@ impl Layout {
     }
 
     /// Columns of events.csv: all of the run.
-    pub(super) fn event_columns(&self) -> Vec<Column> {
+    pub fn event_columns(&self) -> Vec<Column> {
         let (time, others) = self.wanted.columns().split_first().expect("a run has a time");
         let (others, derivatives) = others.split_at(others.partition_point(|column| !is_derivative(column)));
         let swept = self.written[..self.swept].iter().cloned();

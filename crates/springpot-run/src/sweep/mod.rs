@@ -26,9 +26,11 @@ pub use layout::{
 };
 pub use limits::{CasesPassing, LimitTally};
 pub use metrics::CaseMetrics;
+pub(crate) use parcel::Ended;
 pub use parcel::{Parcel, ParcelError, Source};
 pub(crate) use record::begun;
 pub use shard::Shard;
+pub(crate) use taken::push_row;
 
 use crate::metrics::{COLUMNS as METRIC_COLUMNS, GRADIENT_COLUMNS};
 use crate::table::disk::DiskFile;

@@ -1,17 +1,20 @@
 //! A case that has come to its end, whole: what another process hands over, and what a run in memory keeps.
 
+use super::Progress;
 use super::checkpoint::{CaseDone, CheckpointError, Shards, Stretch, Written};
+use super::derivatives::CaseDerivatives;
+use super::events::{CaseEvents, Happened};
 use super::layout::Layout;
 use super::metrics::CaseMetrics;
 use super::simulate::{Back, Ran, Resumed, Sink, simulate};
 use super::taken::{Taken, push_row};
-use super::{Progress, events::Happened};
 use crate::table::Statistics;
 use crate::table::disk::Disk;
 use crate::table::sealed::{CHECKPOINT, SealError, open, seal};
 use crate::trouble::Trouble;
 use serde::{Deserialize, Serialize};
 use springpot::driver::{PassedLimit, Report};
+use springpot::sensitivity::Lost;
 use springpot::system::{RunError, Stop, System};
 use springpot_scenario::{Cases, Plan};
 use std::io;
@@ -37,6 +40,24 @@ enum ParcelRows {
     Text(Vec<u8>),
     /// One for each selected column; NaN where a cell is empty.
     Columns(Vec<Vec<f64>>),
+}
+
+/// What is known of a case that was read back, its rows aside.
+#[derive(Debug, Default)]
+pub(crate) struct Ended {
+    pub(crate) index: usize,
+    pub(crate) report: Report,
+    pub(crate) error: Option<Trouble>,
+    pub(crate) no_ledger: Option<String>,
+    pub(crate) limits: Vec<PassedLimit>,
+    pub(crate) wall: Duration,
+    /// Values in the order of the scenario.
+    pub(crate) metrics: Vec<f64>,
+    /// By metric and parameter.
+    pub(crate) gradients: Vec<Vec<f64>>,
+    pub(crate) lost: Vec<Lost>,
+    /// Its lines in events.csv.
+    pub(crate) events: String,
 }
 
 /// Takes text of rows, and values kept for figures.
@@ -105,6 +126,23 @@ impl Parcel {
         let written = Written { rows, aside: false, kept: rows, statistics, events, wall, wall_of_run: wall };
         let done = CaseDone { index, written, report, error, no_ledger, limits, metrics };
         Some(Self { done, rows: ParcelRows::Columns(columns), kept })
+    }
+
+    /// A case that was read back from results, with its columns behind the swept parameters.
+    pub(crate) fn read_back(ended: Ended, columns: Vec<Vec<f64>>) -> Self {
+        let Ended { index, report, error, no_ledger, limits, wall, metrics, gradients, lost, events } = ended;
+        let statistics = columns.iter().map(|column| {
+            let mut statistics = Statistics::default();
+            column.iter().for_each(|value| statistics.add(*value));
+            statistics
+        });
+        let events = CaseEvents { lines: events, happened: Happened::default() };
+        let (rows, statistics) = (Stretch::default(), statistics.collect());
+        let written = Written { rows, aside: false, kept: rows, statistics, events, wall, wall_of_run: wall };
+        let derivatives = CaseDerivatives { gradients, lost, ..CaseDerivatives::default() };
+        let metrics = CaseMetrics { values: metrics, derivatives, ..CaseMetrics::default() };
+        let done = CaseDone { index, written, report, error, no_ledger, limits, metrics };
+        Self { done, rows: ParcelRows::Columns(columns), kept: Vec::new() }
     }
 
     /// A case whose rows are known as text.
@@ -196,6 +234,23 @@ impl Parcel {
         match &self.rows {
             ParcelRows::Columns(columns) => Some(columns),
             ParcelRows::Text(_) => None,
+        }
+    }
+
+    /// The same with these of its columns alone, by their place; the others hold nothing, and it is not written any more.
+    pub fn with_columns(&self, kept: &[usize]) -> Self {
+        let ParcelRows::Columns(columns) = &self.rows else { return self.clone() };
+        let column = |(k, column): (usize, &Vec<f64>)| if kept.contains(&k) { column.clone() } else { Vec::new() };
+        let rows = ParcelRows::Columns(columns.iter().enumerate().map(column).collect());
+        Self { done: self.done.clone(), rows, kept: Vec::new() }
+    }
+
+    /// Whether it has all of its columns, so that it can be written.
+    pub fn is_whole(&self) -> bool {
+        let wanted = self.done.report.rows as usize;
+        match &self.rows {
+            ParcelRows::Text(_) => true,
+            ParcelRows::Columns(columns) => columns.iter().all(|column| column.len() == wanted),
         }
     }
 

@@ -215,6 +215,16 @@ fn one(cases: &Cases, layout: &Layout, case: &CaseResult) -> Value {
             let explicit = ["explicit_steps", "evaluations", "method_switches"];
             ["newton_iterations", "switches", "resolution"].into_iter().chain(explicit).any(|own| own == key)
         };
+        if let Some(trouble) = &case.error {
+            let told = [
+                ("error_place", json!(trouble.place)),
+                ("error_help", json!(trouble.help)),
+                ("error_t", json!(trouble.t)),
+            ];
+            record.extend(
+                told.into_iter().filter(|(_, value)| !value.is_null()).map(|(key, value)| (key.to_owned(), value)),
+            );
+        }
         record.extend(report.into_iter().filter(|(key, value)| !(value.is_null() && silent(key))));
     }
     record

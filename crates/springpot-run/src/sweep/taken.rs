@@ -82,7 +82,7 @@ pub(super) fn lead(cases: &Cases, index: usize) -> String {
 }
 
 /// One row of results.csv: the swept values, then the others.
-pub(super) fn push_row(text: &mut String, lead: &str, mut values: impl Iterator<Item = f64>) {
+pub(crate) fn push_row(text: &mut String, lead: &str, mut values: impl Iterator<Item = f64>) {
     text.push_str(lead);
     push_number(text, values.next().unwrap_or(f64::NAN));
     push_fields(text, values);

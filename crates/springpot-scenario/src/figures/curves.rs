@@ -1,7 +1,7 @@
 //! Curves: columns over a column.
 
 use super::columns::{ColumnGlob, glob, globs};
-use super::{DRAWN, FigureKind, Reading};
+use super::{FigureKind, PLANE, Reading};
 use crate::keys::{Key, Need, Shape, key};
 use crate::reader::Read;
 use serde_json::{Map, Value, json};
@@ -13,9 +13,9 @@ pub(super) const Y: Key = key(
     "y",
     Shape::Columns,
     Need::Required("y = [\"strut.Q.q2\"]: the columns to draw"),
-    "A column, a glob such as \"strut.Q.*\", or an array of them; of a summary statistics such as \"max(strut.force)\".",
+    "A column, a glob such as \"strut.Q.*\", or an array of them; of a summary statistics such as \"max(strut.force)\", of a map a swept path.",
 )
-.only(&DRAWN);
+.only(&PLANE);
 
 /// Reads it.
 pub(super) fn read(reading: &Reading<'_>) -> Read<FigureKind> {

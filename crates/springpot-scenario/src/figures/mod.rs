@@ -7,6 +7,7 @@ pub(crate) mod columns;
 mod curves;
 mod data;
 mod look;
+mod map;
 mod selection;
 mod summary;
 
@@ -51,14 +52,25 @@ pub enum FigureKind {
         /// The statistics.
         y: Vec<Summarised>,
     },
+    /// A number of every case over two swept parameters, in coloured cells.
+    Map {
+        /// The sweep along x.
+        x: SweptAxis,
+        /// The sweep along y.
+        y: SweptAxis,
+        /// What the colours say.
+        z: Summarised,
+    },
     /// The robot and its elements at t = 0.
     Robot,
 }
 
 const CURVES: &str = curves::WORD;
 const ROBOT: &str = "robot";
-/// The kinds that have axes.
+/// The kinds of curves.
 const DRAWN: [&str; 2] = [CURVES, summary::WORD];
+/// The kinds that have axes.
+const PLANE: [&str; 3] = [CURVES, summary::WORD, map::WORD];
 
 /// A kind of figure.
 struct Kind {
@@ -78,9 +90,10 @@ struct Reading<'a> {
 }
 
 /// In the order in which messages list them.
-static KINDS: [Kind; 3] = [
+static KINDS: [Kind; 4] = [
     Kind { word: CURVES, read: curves::read },
     Kind { word: summary::WORD, read: summary::read },
+    Kind { word: map::WORD, read: map::read },
     Kind { word: ROBOT, read: |_| Ok(FigureKind::Robot) },
 ];
 
@@ -91,22 +104,25 @@ impl FigureKind {
         match self {
             Self::Curves { x, y } => (const { &KINDS[0] }, curves::record(x, y)),
             Self::Summary { x, y } => (const { &KINDS[1] }, summary::record(x, y)),
-            Self::Robot => (const { &KINDS[2] }, Map::new()),
+            Self::Map { x, y, z } => (const { &KINDS[2] }, map::record(x, y, z)),
+            Self::Robot => (const { &KINDS[3] }, Map::new()),
         }
     }
 }
 
 /// The kinds of it that `only` knows are the kinds of figures.
-pub(crate) static FIGURE: Keys = Keys { words: "A figure of curves, of statistics, or of the robot.", keys: &ALL };
+pub(crate) static FIGURE: Keys =
+    Keys { words: "A figure of curves, of statistics, of coloured cells, or of the robot.", keys: &ALL };
 
 /// What is drawn, of which cases; how it looks are the keys behind them.
-const OWN: [Key; 8] = [
+const OWN: [Key; 9] = [
     key("name", Shape::FileName, Need::Said("figure-1, …"), "Name of its files without an ending."),
     key("title", Shape::Text, Need::Said("none"), "Title."),
-    summary::X.only(&DRAWN),
+    summary::X.only(&PLANE),
     curves::Y,
+    map::Z,
     data::DATA,
-    key("units", Shape::TextsByName, Need::Said("SI"), "Units to draw columns in, by column or glob.").only(&DRAWN),
+    key("units", Shape::TextsByName, Need::Said("SI"), "Units to draw columns in, by column or glob.").only(&PLANE),
     key("where", Shape::ByName, Need::Said("all cases"), "Only the cases with these values, by swept path."),
     key("kind", Shape::Words(|| KINDS.iter().map(|kind| kind.word).collect()), Need::Word(CURVES), "What is drawn."),
 ];
@@ -202,12 +218,21 @@ fn figure(whole: &Whole<'_>, item: &Field<'_>, i: usize) -> Read<FigurePlan> {
     let kind = kind?;
     let look = look::read(&table, kind == FigureKind::Robot, end);
     let selection = selection?;
-    if let FigureKind::Summary { x, .. } = &kind
-        && selection.iter().any(|chosen| chosen.axis == x.axis)
-    {
+    let over = match &kind {
+        FigureKind::Summary { x, .. } => vec![x],
+        FigureKind::Map { x, y, .. } => vec![x, y],
+        FigureKind::Curves { .. } | FigureKind::Robot => Vec::new(),
+    };
+    if let Some(x) = over.iter().find(|x| selection.iter().any(|chosen| chosen.axis == x.axis)) {
         let message = format!("[[figure]] {}: `where` chooses one value of {}, over which it is drawn", i + 1, x.path);
         let refusal = item.node.place.refuse(RefusalKind::Rule, message);
         return Err(item.ctx.refuse(refusal.help("leave it out of `where`")));
+    }
+    if let FigureKind::Map { x, y, .. } = &kind
+        && let Some((why, help)) = map::fault(x, y, axes, &selection)
+    {
+        let refusal = item.node.place.refuse(RefusalKind::Rule, format!("[[figure]] {}: {why}", i + 1));
+        return Err(item.ctx.refuse(refusal.help(help)));
     }
     Ok(FigurePlan {
         name: name?,

@@ -60,6 +60,16 @@ pub enum Summarised {
 /// What stands before the parenthesis of a metric.
 const METRIC: &str = "metric";
 
+impl Summarised {
+    /// As a scenario has it.
+    pub fn written(&self) -> String {
+        match self {
+            Self::Columns { statistic, columns } => format!("{}({})", statistic.name(), columns.text),
+            Self::Metric(name) => format!("{METRIC}({name})"),
+        }
+    }
+}
+
 /// The sweep whose values are the abscissae.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SweptAxis {
@@ -72,7 +82,7 @@ pub struct SweptAxis {
 }
 
 pub(super) const X: Key =
-    key("x", Shape::Column, Need::Word("t"), "Column of the abscissa; of a summary a swept path.");
+    key("x", Shape::Column, Need::Word("t"), "Column of the abscissa; of a summary and a map a swept path.");
 
 /// Reads it.
 pub(super) fn read(reading: &Reading<'_>) -> Read<FigureKind> {
@@ -83,7 +93,7 @@ pub(super) fn read(reading: &Reading<'_>) -> Read<FigureKind> {
     Ok(FigureKind::Summary { x: x?, y: y? })
 }
 
-fn swept(reading: &Reading<'_>, field: &Field<'_>) -> Read<SweptAxis> {
+pub(super) fn swept(reading: &Reading<'_>, field: &Field<'_>) -> Read<SweptAxis> {
     let wanted = path::resolve(field.ctx, reading.root.node, field.text()?, &field.node.place)?;
     let targets = || {
         let axes = reading.axes.iter().enumerate();
@@ -114,7 +124,7 @@ fn summarised(reading: &Reading<'_>, field: &Field<'_>) -> Read<Vec<Summarised>>
     all(items.iter().map(|item| one(reading, item)))
 }
 
-fn one(reading: &Reading<'_>, field: &Field<'_>) -> Read<Summarised> {
+pub(super) fn one(reading: &Reading<'_>, field: &Field<'_>) -> Read<Summarised> {
     let text = field.text()?.trim();
     let choices = Statistic::ALL.map(Statistic::name);
     let Some((name, column)) = text.strip_suffix(')').and_then(|text| text.split_once('(')) else {
@@ -165,10 +175,6 @@ fn metric(reading: &Reading<'_>, field: &Field<'_>, name: &str) -> Read<String> 
 
 /// What run.json says of it.
 pub(super) fn record(x: &SweptAxis, y: &[Summarised]) -> Map<String, Value> {
-    let one = |y: &Summarised| match y {
-        Summarised::Columns { statistic, columns } => format!("{}({})", statistic.name(), columns.text),
-        Summarised::Metric(name) => format!("{METRIC}({name})"),
-    };
-    let y: Value = y.iter().map(one).collect();
+    let y: Value = y.iter().map(Summarised::written).collect();
     Map::from_iter([("x".to_owned(), json!(x.path)), ("y".to_owned(), y)])
 }

@@ -28,6 +28,8 @@ pub struct FigureData {
     pub totals: Vec<FigureTotal>,
     /// The abscissa of the statistics.
     pub over: Option<Abscissa>,
+    /// The second axis of a map.
+    pub across: Option<Abscissa>,
     /// Measured points beside them.
     pub measured: Vec<MeasuredPoints>,
     /// How it looks.
@@ -88,6 +90,8 @@ pub struct Abscissa {
     pub column: FigureColumn,
     /// Its values, as `column` takes them.
     pub values: Vec<f64>,
+    /// What they are called, where they are no numbers or have names: `values` are their places then.
+    pub names: Vec<String>,
 }
 
 /// Rows with t in between.
@@ -307,7 +311,7 @@ impl Wanted {
         &mut self,
         cases: &Cases,
         figure: &FigurePlan,
-        over: Abscissa,
+        (over, across): (Abscissa, Option<Abscissa>),
         totals: &[Summed],
     ) -> Result<FigureData, Refusals> {
         let metrics = totals.iter().filter_map(|total| match total {
@@ -327,8 +331,9 @@ impl Wanted {
         let look = DrawnLook::of(figure, &over.column, &columns)?;
         let fixed = |axis: usize| figure.selection.iter().find(|s| s.axis == axis).map(|s| s.value);
         let len = |axis: usize| if fixed(axis).is_some() { 1 } else { cases.axis_len(axis) };
-        let others = (0..cases.axis_count()).filter(|axis| *axis != over.axis).map(len).product::<usize>();
-        let summed = others.saturating_mul(len(over.axis));
+        let is_other = |axis: &usize| *axis != over.axis && across.as_ref().is_none_or(|across| *axis != across.axis);
+        let others = (0..cases.axis_count()).filter(is_other).map(len).product::<usize>();
+        let summed = (0..cases.axis_count()).map(len).fold(1, usize::saturating_mul);
         let too_many = (summed > MAX_SUMMED).then_some(LeftOut::Cases { cases: summed });
         if let Some(left_out) = too_many.or_else(|| self.count_in(others.saturating_mul(totals.len()))) {
             return Ok(FigureData { left_out: Some(left_out), ..FigureData::default() });
@@ -345,7 +350,7 @@ impl Wanted {
             FigureTotal { what, y }
         });
         let (totals, cases) = (totals.collect(), selected_cases(cases, &fixed));
-        Ok(FigureData { totals, cases, look, over: Some(over), ..FigureData::default() })
+        Ok(FigureData { totals, cases, look, over: Some(over), across, ..FigureData::default() })
     }
 
     /// A metric as a figure draws it.

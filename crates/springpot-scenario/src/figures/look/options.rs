@@ -1,6 +1,6 @@
 //! The options of the look of a figure: a field of [`Look`] and a row each.
 
-use super::super::{CURVES, DRAWN, ROBOT};
+use super::super::{CURVES, DRAWN, PLANE, ROBOT};
 use super::{FigureFormat, FigureLabel, RangeEnd, Said};
 use crate::keys::{Key, Need, Shape, key};
 
@@ -154,12 +154,12 @@ pub const OPTIONS: [LookOption; 13] = [
         takes: Takes::Size(|look| &mut look.size),
     },
     LookOption {
-        key: key("x_label", Shape::Text, Need::Optional, "What stands at x, its unit included.").only(&DRAWN),
+        key: key("x_label", Shape::Text, Need::Optional, "What stands at x, its unit included.").only(&PLANE),
         spelt: spelt("x-label", "TEXT", "What stands at x, its unit included"),
         takes: Takes::Text(|look| &mut look.x.label),
     },
     LookOption {
-        key: key("y_label", Shape::Text, Need::Optional, "What stands at y, its unit included.").only(&DRAWN),
+        key: key("y_label", Shape::Text, Need::Optional, "What stands at y, its unit included.").only(&PLANE),
         spelt: spelt("y-label", "TEXT", "What stands at y, its unit included"),
         takes: Takes::Text(|look| &mut look.y.label),
     },
@@ -186,7 +186,7 @@ pub const OPTIONS: [LookOption; 13] = [
     },
     LookOption {
         key: key("window", Shape::Pair("s"), Need::Said("the whole run"), "Only rows with t in between are drawn.")
-            .only(&DRAWN),
+            .only(&PLANE),
         spelt: spelt("window", "A,B", "Draw only rows with t from A to B, in s or with a unit"),
         takes: Takes::Times(|look| &mut look.window),
     },
@@ -233,5 +233,5 @@ const fn range(name: &'static str, words: &'static str) -> Key {
 }
 
 const fn scale(name: &'static str, words: &'static str) -> Key {
-    key(name, Shape::Words(SCALES), Need::Word("linear"), words).only(&DRAWN)
+    key(name, Shape::Words(SCALES), Need::Word("linear"), words).only(&PLANE)
 }
