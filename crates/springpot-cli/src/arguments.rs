@@ -159,7 +159,7 @@ Examples:
   springpot modes arm.toml --at 0.5 --set element.strut.alpha=0.3
   springpot modes arm.toml --out eigenvalues.svg
   springpot modes arm.toml --frequency-response tau.q2 strut.force --to 20
-  springpot modes arm.toml --sweep motion.controller.kp=10:100:10 --out locus.svg
+  springpot modes arm.toml --sweep motion.controller.kp=10:99:9 --out locus.svg
   springpot modes arm.toml --margins q2 --decibel --out loop.svg
 
 Linearises about the start, the configuration at a time, or the static equilibrium that the robot sinks into, and prints the \
@@ -175,8 +175,8 @@ Exit codes: 0 done, 1 the motion does not come as far, 2 the input was refused, 
     /// Linear model of first order about rest, memories as a few decays.
     #[command(after_help = "\
 Examples:
-  springpot linearise arm.toml --input tau.q2 --output q.q2,strut.force --equilibrium --out arm.json
-  springpot linearise arm.toml --input reference.q1 --output q.q1 --band '0.1 Hz,50 Hz' --tolerance 1e-3 --out loop.npz
+  springpot linearise arm.toml --input tau.q2 --output q.q2 --out arm.json
+  springpot linearise arm.toml --input reference.q1 --output q.q1 --out loop.npz
 
 x' = A x + B u, y = C x + D u of small motions about the start, the configuration at a time, or the static equilibrium. Every memory is a few \
 decays, as few as keep each channel's frequency response within the tolerance of the exact one, relative to it at every frequency of the band. \

@@ -92,11 +92,7 @@ impl Results {
     /// # Errors
     /// There are none, or they cannot be read.
     pub fn open(disk: &Disk, folder: &Path) -> Result<Self, ResultsError> {
-        let results = Self::read(disk, folder)?;
-        if results.record.scenes.is_empty() {
-            return Err(ResultsError::NoScene(folder.to_owned()));
-        }
-        Ok(results)
+        Self::of(disk, folder, true)
     }
 
     /// The same, also where nothing says what is drawn.
@@ -104,6 +100,10 @@ impl Results {
     /// # Errors
     /// There are none, or they cannot be read.
     pub fn read(disk: &Disk, folder: &Path) -> Result<Self, ResultsError> {
+        Self::of(disk, folder, false)
+    }
+
+    fn of(disk: &Disk, folder: &Path, wants_scenes: bool) -> Result<Self, ResultsError> {
         let failed = |file: &Path, error| ResultsError::File { file: file.to_owned(), error };
         match disk.look(folder) {
             Ok(Some(_)) => {}
@@ -116,6 +116,9 @@ impl Results {
             None => ResultsError::NoRecord(folder.to_owned()),
             Some(why) => ResultsError::Damaged { folder: folder.to_owned(), why },
         })?;
+        if wants_scenes && record.scenes.is_empty() {
+            return Err(ResultsError::NoScene(folder.to_owned()));
+        }
         let file = folder.join(record.rows_file());
         let rows = Stored::open(disk, &file).map_err(|error| failed(&file, error))?;
         let swept = record.parameters().count().min(rows.columns().len());

@@ -38,6 +38,9 @@ pub trait Real:
     + SubAssign
     + Sum
 {
+    /// Whether there are derivatives.
+    const HAS_SLOPE: bool;
+
     /// The number without its derivative.
     fn value(self) -> f64;
 
@@ -141,6 +144,8 @@ impl Sum for Dual {
 }
 
 impl Real for f64 {
+    const HAS_SLOPE: bool = false;
+
     fn value(self) -> f64 {
         self
     }
@@ -175,6 +180,8 @@ impl Real for f64 {
 }
 
 impl Real for Dual {
+    const HAS_SLOPE: bool = true;
+
     fn value(self) -> f64 {
         self.value
     }

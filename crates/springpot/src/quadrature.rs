@@ -54,7 +54,7 @@ fn first_kink(interval: [f64; 2], branch: &dyn Fn(f64) -> u64) -> Option<[f64; 2
 }
 
 /// Adaptive halving until the rules of 7 and 15 points agree to 1e-14 of ∫|f|; NaN where [`MOST`] uses of them do not do.
-fn smooth<T: Real>(whole: [f64; 2], f: &dyn Fn(f64) -> T) -> T {
+pub(crate) fn smooth<T: Real>(whole: [f64; 2], f: &dyn Fn(f64) -> T) -> T {
     let (mut sum, mut allowed, mut open) = (T::from(0.0), None, vec![whole]);
     let mut used = 0;
     while let Some([start, end]) = open.pop() {

@@ -198,7 +198,7 @@ fn other_metrics_are_asked_for_on_the_command_line() {
         ("my rms = rms(q.q1)", "which is not a name", "--metric:1:1"),
         // What is shown is what was written, and what else a metric has stands in front.
         ("rms(q.q1), window = [3, 2]", "rms(q.q1), window = [3, 2]\n", "--metric:1:21"),
-        ("rms(q.q1), of = \"v.x\"", "there is window, band and target", "--metric:1:12"),
+        ("rms(q.q1), of = \"v.x\"", "there is window, band, target and levels", "--metric:1:12"),
         (
             "rms(q.q1), window = [100, 200]",
             "the rows go from 0 s to 0.35 s; choose a window that holds some",

@@ -73,7 +73,7 @@ pub struct Controlled {
     pub law: Arc<dyn Controller>,
     /// What it aims at.
     pub reference: Reference,
-    /// Bounds of its actuator forces, for each velocity.
+    /// Bounds of its actuator forces, for each velocity; those left out have none.
     pub limits: Vec<Limit>,
     /// What integrals do while a force is at its bound.
     pub anti_windup: AntiWindup,
@@ -88,6 +88,20 @@ pub struct Controlled {
 }
 
 impl Controlled {
+    /// A law that acts at every time on the error as it is, without limits.
+    pub fn new(law: Arc<dyn Controller>, reference: Reference) -> Self {
+        Self {
+            law,
+            reference,
+            limits: Vec::new(),
+            anti_windup: AntiWindup::default(),
+            sampling: None,
+            shaping: Shaping::default(),
+            feed_forward: Vec::new(),
+            measurement: None,
+        }
+    }
+
     /// τ (nv) without its error terms and before all limits.
     pub(crate) fn torque(&self, at: &At, scratch: &mut Scratch, tau: &mut [f64]) {
         self.law.torque(at, scratch, tau);

@@ -9,6 +9,7 @@
 //! `log` is the natural logarithm, `step(x)` is 0 for x < 0 and 1 for x ≥ 0, `sign(0)` is 0, 0^0 is 1. Numbers may have an
 //! exponent (`1e-3`). A product is always written out.
 
+mod bound;
 mod branch;
 mod error;
 mod formula;
@@ -21,6 +22,7 @@ mod slope;
 mod terms;
 mod within;
 
+pub(crate) use bound::BoundExpression;
 pub use branch::Branch;
 pub use error::ExpressionError;
 pub use formula::Expression;

@@ -41,6 +41,12 @@ impl Value for Gradient {
     fn mul(self, other: Self) -> Self {
         self.with(self.value * other.value, other.value, other, self.value)
     }
+    fn scale(self, factor: f64) -> Self {
+        Self { value: factor * self.value, by: self.by.map(|slope| factor * slope) }
+    }
+    fn shift(self, by: f64) -> Self {
+        Self { value: self.value + by, ..self }
+    }
     fn div(self, other: Self) -> Self {
         let value = self.value / other.value;
         Self { value, by: [0, 1].map(|k| (self.by[k] - value * other.by[k]) / other.value) }

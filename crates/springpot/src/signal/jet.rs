@@ -21,6 +21,12 @@ pub(super) trait Value: Copy {
     fn mul(self, other: Self) -> Self;
     fn div(self, other: Self) -> Self;
     fn pow(self, exponent: Self) -> Self;
+    fn scale(self, factor: f64) -> Self {
+        Self::constant(factor).mul(self)
+    }
+    fn shift(self, by: f64) -> Self {
+        self.add(Self::constant(by))
+    }
     /// The angle of the point (x, self).
     fn atan2(self, x: Self) -> Self;
     /// f(self) from f, f', f'' at the value; the derivatives are not asked for where they are not needed.

@@ -19,6 +19,7 @@ mod series;
 pub mod watched;
 
 pub use agenda::{Agenda, Stop};
+pub(crate) use expression::BoundExpression;
 pub use expression::{
     Branch, ColumnExpression, Expression, ExpressionError, MovedJump, Slope, SlopeError, StrokeExpression,
 };

@@ -10,7 +10,7 @@ use crate::law::state::{State, StateRef};
 use crate::law::step::{Observation, Point, Power, Powers, Response, Start, Step, Term};
 use crate::law::tangent::{AtRest, Tangent};
 use crate::quadrature;
-use crate::signal::StrokeExpression;
+use crate::signal::{BoundExpression, StrokeExpression};
 use std::sync::Arc;
 
 /// F = f(x, x'), as an expression of the stroke and its rate says.
@@ -22,6 +22,8 @@ pub struct ExpressionLeaf {
     expression: Arc<StrokeExpression>,
     /// Its parameters, in the order of [`StrokeExpression::parameters`].
     numbers: Vec<Dual>,
+    /// It with their values.
+    bound: Arc<BoundExpression>,
     has_rate: bool,
     holds: Holds,
 }
@@ -30,34 +32,42 @@ impl ExpressionLeaf {
     /// Of the values of its parameters, in the order of [`StrokeExpression::parameters`].
     pub fn new(expression: Arc<StrokeExpression>, numbers: Vec<Dual>) -> Self {
         let has_rate = expression.has_rate();
-        let holds = holds(&expression, &numbers);
-        Self { expression, numbers, has_rate, holds }
+        let bound = Arc::new(expression.bind(&Dual::values(&numbers)));
+        let holds = holds(&bound, has_rate);
+        Self { expression, numbers, bound, has_rate, holds }
     }
 
     fn at<T: Real>(&self, x: T, rate: T) -> T {
-        self.expression.value_of(x, rate, &self.numbers)
+        match T::HAS_SLOPE {
+            true => self.expression.value_of(x, rate, &self.numbers),
+            false => self.bound.value(x.value(), rate.value()).into(),
+        }
     }
 
     /// f(x, 0), and its derivatives by stroke and rate there.
     fn resting(&self, x: f64) -> (f64, [f64; 2]) {
-        let gradient = self.expression.gradient(x, 0.0, &self.numbers);
+        let gradient = self.bound.gradient(x, 0.0);
         (gradient.value, gradient.by)
     }
 
     /// ∫₀ˣ f dx.
     fn energy<T: Real>(&self, x: T) -> T {
         let end = x.value();
-        let branch = |s: f64| self.expression.branch(s * end, 0.0, &self.numbers);
-        x * quadrature::between_kinks([0.0, 1.0], &|s| self.at(x * s.into(), 0.0.into()), &branch)
+        let value = |s: f64| self.at(x * s.into(), 0.0.into());
+        let branch = |s: f64| self.bound.branch(s * end, 0.0);
+        x * match self.bound.has_kinks() {
+            true => quadrature::between_kinks([0.0, 1.0], &value, &branch),
+            false => quadrature::smooth([0.0, 1.0], &value),
+        }
     }
 }
 
 /// Whether its force grows with its stroke or its rate everywhere, as far as strokes and rates from 1e-9 to 1e3 tell.
-fn holds(expression: &StrokeExpression, numbers: &[Dual]) -> Holds {
+fn holds(bound: &BoundExpression, has_rate: bool) -> Holds {
     let sizes = || (-9..=3).map(|power| 10.0f64.powi(power));
     let values: Vec<f64> = sizes().map(|size| -size).chain([0.0]).chain(sizes()).collect();
-    let rates: &[f64] = if expression.has_rate() { &values } else { &[0.0] };
-    let points = values.iter().flat_map(|x| rates.iter().map(|rate| expression.gradient(*x, *rate, numbers)));
+    let rates: &[f64] = if has_rate { &values } else { &[0.0] };
+    let points = values.iter().flat_map(|x| rates.iter().map(|rate| bound.gradient(*x, *rate)));
     let (mut gives, mut grows) = (false, true);
     for point in points.filter(|point| point.value.is_finite() && point.by.iter().all(|slope| slope.is_finite())) {
         gives |= point.value != 0.0;
@@ -84,7 +94,7 @@ impl Leaf for ExpressionLeaf {
 
     fn evaluate(&self, step: &Step, _: StateRef, response: &mut Response) {
         for i in 0..step.nodes.count() {
-            let own = self.expression.gradient(step.stroke[i + 1], step.rate[i + 1], &self.numbers);
+            let own = self.bound.gradient(step.stroke[i + 1], step.rate[i + 1]);
             response.force[i] += own.value;
             response.d_stroke[i][i] += own.by[0];
             response.d_rate[i][i] += own.by[1];
@@ -108,7 +118,7 @@ impl Leaf for ExpressionLeaf {
     }
 
     fn linearised(&self, at: &Point) -> Term {
-        match self.expression.gradient(at.stroke, at.rate, &self.numbers).by {
+        match self.bound.gradient(at.stroke, at.rate).by {
             [stiffness, 0.0] => Term { coefficient: stiffness.abs(), order: 0.0 },
             [_, damping] => Term { coefficient: damping.abs(), order: 1.0 },
         }
@@ -143,7 +153,7 @@ impl Leaf for ExpressionLeaf {
     }
 
     fn guards(&self, at: &Point, take: &mut dyn FnMut(f64)) {
-        self.expression.kinks(at.stroke, at.rate, &self.numbers, &mut |kink| take(kink.argument));
+        self.bound.kinks(at.stroke, at.rate, take);
     }
 
     fn jumps(&self) -> bool {

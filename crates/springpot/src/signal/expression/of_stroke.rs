@@ -4,8 +4,7 @@ use super::error::ExpressionError;
 use super::parse::program_of_stroke;
 use super::program::{MAX_KINKS, MAX_STACK, Op, Trace, argument, carry_out, run_on};
 use crate::dual::{Dual, Real};
-use crate::signal::gradient::Gradient;
-use crate::signal::jet::{Jet, Value};
+use crate::signal::jet::Jet;
 use std::fmt;
 
 /// Variables of such an expression: stroke and rate.
@@ -25,7 +24,7 @@ pub(super) const VARIABLES: [&str; 2] = ["x", "v"];
 pub struct StrokeExpression {
     source: String,
     /// Its columns are x, v and the parameters.
-    program: Vec<Op>,
+    pub(super) program: Vec<Op>,
     parameters: Vec<String>,
 }
 
@@ -83,20 +82,6 @@ impl StrokeExpression {
         let columns = |k: usize| jet(column([x, v], k, |k| T::of(numbers[k])));
         let Jet { value, first: slope, .. } = run_on(&self.program, Jet::default(), &columns, &mut Trace::default());
         T::of(Dual { value, slope })
-    }
-
-    /// The value and its derivatives by stroke and rate; at a kink those of the side above.
-    pub(crate) fn gradient(&self, x: f64, v: f64, numbers: &[Dual]) -> Gradient {
-        let variables = [Gradient { value: x, by: [1.0, 0.0] }, Gradient { value: v, by: [0.0, 1.0] }];
-        let columns = |k: usize| column(variables, k, |k| Gradient::constant(numbers[k].value));
-        run_on(&self.program, Gradient::default(), &columns, &mut Trace::default())
-    }
-
-    /// A bit for each of its kinks: on which side it is.
-    pub(crate) fn branch(&self, x: f64, v: f64, numbers: &[Dual]) -> u64 {
-        let mut trace = Trace::default();
-        run_on(&self.program, 0.0, &|k| column([x, v], k, |k| numbers[k].value), &mut trace);
-        trace.branch
     }
 
     /// Hands over its kinks, always as many in one order; functions that end somewhere have none there.
@@ -166,6 +151,7 @@ impl fmt::Display for StrokeExpression {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::signal::gradient::Gradient;
 
     const TEXTS: [&str; 8] = [
         "k*x + b*x^3 + c*v*abs(v)",
@@ -188,8 +174,8 @@ mod tests {
             let numbers: Vec<Dual> = order.map(|k| Dual::from(values[k])).collect();
             let plain = Dual::values(&numbers);
             for (x, v) in [(0.31, 0.83), (0.9, -0.4), (0.17, 2.1)] {
-                let Gradient { value, by } = force.gradient(x, v, &numbers);
-                assert_eq!(value.to_bits(), force.value(x, v, &plain).to_bits(), "{text}");
+                let Gradient { value, by } = force.bind(&plain).gradient(x, v);
+                assert!((value - force.value(x, v, &plain)).abs() <= 1e-14 * (1.0 + value.abs()), "{text}");
                 let d = 1e-4;
                 let difference =
                     |f: &dyn Fn(f64) -> f64| (8.0 * (f(d) - f(-d)) - (f(2.0 * d) - f(-2.0 * d))) / (12.0 * d);
@@ -233,7 +219,8 @@ mod tests {
         of("max(x - a, 0) + c*abs(v)")
             .kinks(0.5, -2.0, &[0.1.into(), 3.0.into()], &mut |kink| arguments.push(kink.argument));
         assert_eq!(arguments, [0.4, -2.0]);
-        assert_ne!(of("abs(x)").branch(1.0, 0.0, &[]), of("abs(x)").branch(-1.0, 0.0, &[]));
+        let bound = of("abs(x)").bind(&[]);
+        assert_ne!(bound.branch(1.0, 0.0), bound.branch(-1.0, 0.0));
     }
 
     #[test]

@@ -232,7 +232,7 @@ pub(super) fn carry_out<V: Value>(
     *top += 1;
 }
 
-fn unary<V: Value>(op: Op, argument: V, trace: &mut Trace<'_>) -> V {
+pub(super) fn unary<V: Value>(op: Op, argument: V, trace: &mut Trace<'_>) -> V {
     let u = argument.value();
     match op {
         Op::Smooth(function) => {
@@ -281,7 +281,7 @@ pub(super) fn triangle(u: f64) -> f64 {
     if turns % 2.0 == 0.0 { rest } else { -rest }
 }
 
-fn binary<V: Value>(op: Op, first: V, second: V, trace: &mut Trace<'_>) -> V {
+pub(super) fn binary<V: Value>(op: Op, first: V, second: V, trace: &mut Trace<'_>) -> V {
     match op {
         Op::Add => first.add(second),
         Op::Subtract => first.sub(second),
