@@ -94,6 +94,9 @@ fn state_names(about: &About, states: &[State]) -> Vec<[String; 2]> {
         let (owner, unit) = match state.owner() {
             StateOwner::Velocity(k) => (labels[k].name.clone(), joint(k)),
             StateOwner::Controller(k) => (format!("controller.{}", labels[k].name), joint(k)),
+            StateOwner::Filter(k) => {
+                (format!("controller.{}", labels[k].name), labels[k].dimension.units().force.to_owned())
+            }
             StateOwner::Element(e) => {
                 let name = &about.system.elements[e].name;
                 (name.clone(), stroke_unit(name))
@@ -104,6 +107,9 @@ fn state_names(about: &About, states: &[State]) -> Vec<[String; 2]> {
             StateKind::Position => (format!("q.{owner}"), unit),
             StateKind::Velocity => (format!("v.{owner}"), format!("{unit}/s")),
             StateKind::Inner if is_controller => (format!("{owner}.integral{number}"), format!("{unit}*s")),
+            StateKind::Inner if matches!(state.owner(), StateOwner::Filter(_)) => {
+                (format!("{owner}.filter{number}"), unit)
+            }
             StateKind::Inner => (format!("{owner}.inner{number}"), unit),
             StateKind::Memory => (format!("{owner}.memory{number}"), unit),
             StateKind::MemoryOfIntegral => (format!("{owner}.integral_memory{number}"), format!("{unit}*s")),

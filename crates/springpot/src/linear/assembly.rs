@@ -32,6 +32,8 @@ pub(super) enum Owner {
     Element(usize),
     /// The controller of a velocity.
     Controller(usize),
+    /// The filter of its derivative.
+    Filter(usize),
 }
 
 /// A leaf of a law under small motions.
@@ -151,7 +153,10 @@ impl<'a> Assembly<'a> {
         let fed = unknowns.len();
         unknowns.extend(control.inputs.iter().map(|own| Owner::Element(own.element)));
         let integrals = unknowns.len();
-        unknowns.extend(control.kept().map(|term| Owner::Controller(term.velocity)));
+        unknowns.extend(control.kept().map(|term| match term.order > 0.0 {
+            true => Owner::Filter(term.velocity),
+            false => Owner::Controller(term.velocity),
+        }));
         let size = unknowns.len();
         let mut builder = Builder { columns: size + excitations.len(), springpots: Vec::new() };
         let columns = builder.columns;

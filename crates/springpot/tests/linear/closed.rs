@@ -44,6 +44,29 @@ fn controllers_of_one_mass_have_the_roots_of_their_equation() {
         assert!(modes.is_complete() && modes.free_motions == 0 && !modes.modes.is_empty(), "{modes:?}");
         vanishes(&system, modes.found, &|s| vec![2.0 * s * s, 50.0.into(), 15.0 * s.powf(-lambda), 6.0 * s.powf(mu)]);
     }
+    // Behind a filter, of the error and of the measurement.
+    for on in ["error", "measurement"] {
+        let shaped = format!("filter = 0.05\nderivative_on = \"{on}\"\nset_point_weight = 0.6\n{reference}");
+        vanishes(&controlled(SPRING, &format!("kind = \"pid\"\nkp = 20\nki = 15\nkd = 4\n{shaped}")), 4, &|s| {
+            vec![2.0 * s * s, 4.0 * s / (1.0 + 0.05 * s), 50.0.into(), 15.0 / s]
+        });
+        let law = format!("kind = \"fractional-pid\"\nkp = 20\nkd = 6\nmu = 0.6\n{shaped}");
+        let system = controlled(SPRING, &law);
+        vanishes(&system, modes(&system).found, &|s| {
+            vec![2.0 * s * s, 50.0.into(), 6.0 * s.powf(0.6) / (1.0 + 0.05 * s)]
+        });
+        // Its answer to the reference, of which the parts see what they are to see.
+        let linear = linear(&system);
+        let column = Quantity::Coordinate(0);
+        for omega in [0.5, 4.0, 30.0] {
+            let s = Complex64::new(0.0, omega);
+            let filtered = 6.0 * s.powf(0.6) / (1.0 + 0.05 * s);
+            let seen = 0.6 * 20.0 + if on == "error" { filtered } else { Complex64::ZERO };
+            let wanted = seen / (2.0 * s * s + 50.0 + filtered);
+            let found = linear.frequency_response(Excitation::Reference(0), column, omega).unwrap();
+            assert!((found - wanted).norm() < 1e-12 * wanted.norm(), "{on} at {omega}: {found} {wanted}");
+        }
+    }
     // At its limit a force does not follow, and the integral neither.
     let bound = format!("kind = \"pid\"\nkp = 20\nki = 15\nkd = 4\nlimits = {{ x = 1 }}\n{reference}");
     vanishes(&controlled("law = \"spring\"\nparameters = { k = 30 }\nrest = 0.4", &bound), 2, &|s| {

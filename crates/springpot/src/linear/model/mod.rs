@@ -61,6 +61,8 @@ pub enum StateOwner {
     Element(usize),
     /// The controller of a velocity.
     Controller(usize),
+    /// The filter of its derivative, whose state is a force.
+    Filter(usize),
 }
 
 impl State {
@@ -70,6 +72,7 @@ impl State {
             Owner::Velocity(k) => StateOwner::Velocity(k),
             Owner::Element(e) => StateOwner::Element(e),
             Owner::Controller(k) => StateOwner::Controller(k),
+            Owner::Filter(k) => StateOwner::Filter(k),
         }
     }
 }
