@@ -303,7 +303,11 @@ def small_motions() -> None:
     model: sp.LinearModel = sp.linearise(scenario, ["tau.x"], ["q.x"], band=("0.1 Hz", 10), tolerance=1e-3)
     print(model.A, model.B, model.C, model.D, model.inputs, model.outputs, model.states, model.units, model.band, model.error, model.about)
     answers: NDArray[np.complex128] = sp.frequency_response(scenario, "tau.x", "q.x", [0.1, 1.0], at=0, open=True)
-    print(answers, sp.modes(scenario, equilibrium=True)["eigenvalues"])
+    print(answers, sp.modes(scenario, equilibrium=True)["eigenvalues"], model.to_scipy())
+    try:
+        print(model.to_control())
+    except ImportError as error:
+        print(error)
 
 
 def tools(scratch: Path) -> None:

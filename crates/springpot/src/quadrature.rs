@@ -19,6 +19,13 @@ const KRONROD: [[f64; 3]; 8] = [
     [0.991_455_371_120_812_6, 0.022_935_322_010_529_224, 0.0],
 ];
 
+/// The same of 5 points and of Gauss's 2.
+const SHORT: [[f64; 3]; 3] = [
+    [0.0, 0.622_222_222_222_222_2, 0.0],
+    [0.577_350_269_189_625_7, 0.490_909_090_909_090_9, 1.0],
+    [0.925_820_099_772_551_5, 0.197_979_797_979_797_98, 0.0],
+];
+
 /// ∫ f over an interval, to rounding where f is smooth between the places at which `branch` changes: these are found to their last bits. NaN where there
 /// is none.
 pub(crate) fn between_kinks<T: Real>([start, end]: [f64; 2], f: &dyn Fn(f64) -> T, branch: &dyn Fn(f64) -> u64) -> T {
@@ -30,15 +37,36 @@ pub(crate) fn between_kinks<T: Real>([start, end]: [f64; 2], f: &dyn Fn(f64) -> 
     sum + smooth([from, end], f)
 }
 
-/// The points of the rules in an interval.
-fn places([start, end]: [f64; 2]) -> impl Iterator<Item = f64> {
+/// The points of a rule in an interval, each with its row, in order.
+fn places(rule: &[[f64; 3]], [start, end]: [f64; 2]) -> impl Iterator<Item = (f64, [f64; 3])> {
     let at = move |place: f64| 0.5 * (start + end) + 0.5 * (end - start) * place;
-    KRONROD.iter().rev().map(move |row| at(-row[0])).chain(KRONROD.iter().skip(1).map(move |row| at(row[0])))
+    let below = rule.iter().rev().map(move |row| (at(-row[0]), *row));
+    below.chain(rule.iter().skip(1).map(move |row| (at(row[0]), *row)))
+}
+
+/// What both rules say of ∫ f over an interval, and ∫|f| and the same of its slope.
+fn sums<T: Real>(rule: &[[f64; 3]], interval: [f64; 2], f: &dyn Fn(f64) -> T) -> ([T; 2], [f64; 2]) {
+    let [mut fine, mut coarse] = [T::from(0.0); 2];
+    let (half, mut size) = (0.5 * (interval[1] - interval[0]), [0.0; 2]);
+    for (place, [_, kronrod, gauss]) in places(rule, interval) {
+        let value = f(place);
+        fine += value * (half * kronrod).into();
+        coarse += value * (half * gauss).into();
+        size[0] += half.abs() * kronrod * value.value().abs();
+        size[1] += half.abs() * kronrod * value.slope().abs();
+    }
+    ([fine, coarse], size)
+}
+
+/// Whether two sums agree to what is `allowed` of value and slope.
+fn agree<T: Real>([fine, coarse]: [T; 2], allowed: [f64; 2]) -> bool {
+    let error = fine - coarse;
+    !(error.value().abs() > allowed[0] || error.slope().abs() > allowed[1])
 }
 
 /// The last bits between which the branch changes first, as far as the points of the rules tell.
 fn first_kink(interval: [f64; 2], branch: &dyn Fn(f64) -> u64) -> Option<[f64; 2]> {
-    let mut places = places(interval);
+    let mut places = places(&SHORT, interval).map(|(place, _)| place).chain([interval[1]]);
     let mut low = places.next()?;
     let side = branch(low);
     let mut high = places.find(|place| {
@@ -53,35 +81,25 @@ fn first_kink(interval: [f64; 2], branch: &dyn Fn(f64) -> u64) -> Option<[f64; 2
     Some([low, high])
 }
 
-/// Adaptive halving until the rules of 7 and 15 points agree to 1e-14 of ∫|f|; NaN where [`MOST`] uses of them do not do.
+/// By the rules of 2 and 5 points where these agree, else by adaptive halving until those of 7 and 15 do, to 1e-14 of ∫|f|; NaN where [`MOST`] uses of them
+/// do not do.
 pub(crate) fn smooth<T: Real>(whole: [f64; 2], f: &dyn Fn(f64) -> T) -> T {
+    let (short, size) = sums(&SHORT, whole, f);
+    if agree(short, size.map(|size| 1e-15 * size)) {
+        return short[0];
+    }
     let (mut sum, mut allowed, mut open) = (T::from(0.0), None, vec![whole]);
-    let mut used = 0;
-    while let Some([start, end]) = open.pop() {
-        let [mut fine, mut coarse] = [T::from(0.0); 2];
-        let (half, mut size) = (0.5 * (end - start), [0.0; 2]);
-        for (place, k) in places([start, end]).zip(-7_isize..) {
-            let [_, kronrod, gauss] = KRONROD[k.unsigned_abs()];
-            let value = f(place);
-            fine += value * (half * kronrod).into();
-            coarse += value * (half * gauss).into();
-            size[0] += half.abs() * kronrod * value.value().abs();
-            size[1] += half.abs() * kronrod * value.slope().abs();
-        }
-        let [allowed, of_slope] = *allowed.get_or_insert(size.map(|size| 1e-14 * size));
-        let error = fine - coarse;
-        used += 1;
-        if used > MOST {
-            return f64::NAN.into();
-        }
-        if !(error.value().abs() > allowed || error.slope().abs() > of_slope) {
-            sum += fine;
+    for _ in 0..MOST {
+        let Some([start, end]) = open.pop() else { return sum };
+        let (long, size) = sums(&KRONROD, [start, end], f);
+        if agree(long, *allowed.get_or_insert(size.map(|size| 1e-14 * size))) {
+            sum += long[0];
         } else {
             let middle = 0.5 * (start + end);
             open.extend([[middle, end], [start, middle]]);
         }
     }
-    sum
+    f64::NAN.into()
 }
 
 #[cfg(test)]

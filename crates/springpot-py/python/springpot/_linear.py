@@ -100,12 +100,24 @@ def linearise(
     channels = (list(inputs), list(outputs))
     text = _springpot.linear_model(scenario, channels, place, ends, float(tolerance), set)
     found = json.loads(text)
-    sizes = {"A": "states", "B": "inputs", "C": "states", "D": "inputs"}
-    matrices = {
-        name: np.array(found[name], dtype=float).reshape(-1, len(found[columns])) for name, columns in sizes.items()
-    }
-    rest = {name: found[name] for name in ("inputs", "outputs", "states", "units", "error", "about")}
-    return LinearModel(**matrices, **rest, band=(found["band"][0], found["band"][1]))
+    low, high = found["band"]
+
+    def matrix(name: str, columns: str) -> _Array:
+        return np.array(found[name], dtype=float).reshape(-1, len(found[columns]))
+
+    return LinearModel(
+        A=matrix("A", "states"),
+        B=matrix("B", "inputs"),
+        C=matrix("C", "states"),
+        D=matrix("D", "inputs"),
+        inputs=found["inputs"],
+        outputs=found["outputs"],
+        states=found["states"],
+        units=found["units"],
+        band=(low, high),
+        error=found["error"],
+        about=found["about"],
+    )
 
 
 def modes(

@@ -526,7 +526,7 @@ def map_figure(
     y: tuple[str, list[float], list[str], bool],
     z: str,
     cells: list[float],
-    size: list[float] | None,
+    size: list[float] | None = None,
 ) -> tuple[str, bytes, bytes, list[str]]: ...
 def check(
     scenario: object, set: object = None
