@@ -28,9 +28,15 @@ const SHORT: [[f64; 3]; 3] = [
 
 /// ∫ f over an interval, to rounding where f is smooth between the places at which `branch` changes: these are found to their last bits. NaN where there
 /// is none.
-pub(crate) fn between_kinks<T: Real>([start, end]: [f64; 2], f: &dyn Fn(f64) -> T, branch: &dyn Fn(f64) -> u64) -> T {
+/// A place is found from the `argument` of the bit that changes, which passes zero there, where one is known.
+pub(crate) fn between_kinks<T: Real>(
+    [start, end]: [f64; 2],
+    f: &dyn Fn(f64) -> T,
+    branch: &dyn Fn(f64) -> u64,
+    argument: &dyn Fn(u32, f64) -> Option<f64>,
+) -> T {
     let (mut sum, mut from) = (T::from(0.0), start);
-    while let Some([before, behind]) = first_kink([from, end], branch) {
+    while let Some([before, behind]) = first_kink([from, end], branch, argument) {
         sum += smooth([from, before], f);
         from = behind;
     }
@@ -65,7 +71,11 @@ fn agree<T: Real>([fine, coarse]: [T; 2], allowed: [f64; 2]) -> bool {
 }
 
 /// The last bits between which the branch changes first, as far as the points of the rules tell.
-fn first_kink(interval: [f64; 2], branch: &dyn Fn(f64) -> u64) -> Option<[f64; 2]> {
+fn first_kink(
+    interval: [f64; 2],
+    branch: &dyn Fn(f64) -> u64,
+    argument: &dyn Fn(u32, f64) -> Option<f64>,
+) -> Option<[f64; 2]> {
     let mut places = places(&SHORT, interval).map(|(place, _)| place).chain([interval[1]]);
     let mut low = places.next()?;
     let side = branch(low);
@@ -74,7 +84,19 @@ fn first_kink(interval: [f64; 2], branch: &dyn Fn(f64) -> u64) -> Option<[f64; 2
         low = if is_beyond { low } else { *place };
         is_beyond
     })?;
-    while (high - low).abs() > f64::EPSILON * (interval[1] - interval[0]).abs() {
+    let last_bits = f64::EPSILON * (interval[1] - interval[0]);
+    let bit = (side ^ branch(high)).trailing_zeros();
+    if let Some([a, b]) = argument(bit, low).zip(argument(bit, high)).map(|(a, b)| [a, b])
+        && a * b < 0.0
+    {
+        // One secant is enough where the argument is a straight line.
+        let place = high - b * (high - low) / (b - a);
+        let near = [place - last_bits, place + last_bits];
+        if branch(near[0]) == side && branch(near[1]) != side {
+            return Some(near);
+        }
+    }
+    while (high - low).abs() > last_bits.abs() {
         let middle = 0.5 * (low + high);
         *(if branch(middle) == side { &mut low } else { &mut high }) = middle;
     }
@@ -109,30 +131,32 @@ mod tests {
 
     #[test]
     fn integrals_are_known_to_rounding() {
-        let smooth_alone = |_: f64| 0;
+        let (smooth_alone, none) = (|_: f64| 0, |_: u32, _: f64| None);
         let close = |value: f64, wanted: f64| {
             assert!((value - wanted).abs() <= 4e-15 * (1.0 + wanted.abs()), "{value} {wanted}")
         };
-        close(between_kinks([0.0, 3.0], &f64::exp, &smooth_alone), 3.0f64.exp_m1());
-        close(between_kinks([0.0, -2.0], &|x: f64| x.powi(21), &smooth_alone), 2.0f64.powi(22) / 22.0);
-        close(between_kinks([0.0, 1.0], &|x: f64| 1.0 / (x * x + 1e-4), &smooth_alone), 100.0 * 100.0f64.atan());
+        close(between_kinks([0.0, 3.0], &f64::exp, &smooth_alone, &none), 3.0f64.exp_m1());
+        close(between_kinks([0.0, -2.0], &|x: f64| x.powi(21), &smooth_alone, &none), 2.0f64.powi(22) / 22.0);
+        close(between_kinks([0.0, 1.0], &|x: f64| 1.0 / (x * x + 1e-4), &smooth_alone, &none), 100.0 * 100.0f64.atan());
         // Two kinks, one of which is a jump.
         let bent = |x: f64| (x - 0.3).abs() + if x < 0.7 { 0.0 } else { 5.0 };
         let branch = |x: f64| u64::from(x < 0.3) + 2 * u64::from(x < 0.7);
-        close(between_kinks([0.0, 1.0], &bent, &branch), 0.5 * (0.09 + 0.49) + 1.5);
-        close(between_kinks([1.0, 0.0], &bent, &branch), -0.5 * (0.09 + 0.49) - 1.5);
+        close(between_kinks([0.0, 1.0], &bent, &branch, &none), 0.5 * (0.09 + 0.49) + 1.5);
+        close(between_kinks([1.0, 0.0], &bent, &branch, &none), -0.5 * (0.09 + 0.49) - 1.5);
+        let argument = |bit: u32, x: f64| Some(x - [0.3, 0.7][bit as usize]);
+        close(between_kinks([1.0, 0.0], &bent, &branch, &argument), -0.5 * (0.09 + 0.49) - 1.5);
         // The same unseen, to what halving gives.
-        assert!((between_kinks([0.0, 1.0], &bent, &smooth_alone) - 1.79).abs() < 1e-12);
+        assert!((between_kinks([0.0, 1.0], &bent, &smooth_alone, &none) - 1.79).abs() < 1e-12);
         let end = Dual::variable(2.0);
-        let derived = end * between_kinks([0.0, 1.0], &|s| (end * s.into()).exp(), &smooth_alone);
+        let derived = end * between_kinks([0.0, 1.0], &|s| (end * s.into()).exp(), &smooth_alone, &none);
         close(derived.slope, 2.0f64.exp());
     }
 
     #[test]
     fn what_is_noise_ends() {
         let noise = |x: f64| ((x * 1e9).sin() * 1e3).fract();
-        assert!(between_kinks([0.0, 1.0], &noise, &|_| 0).is_nan());
-        assert!(between_kinks([0.0, 1.0], &|x: f64| 1.0 / x, &|_| 0).is_nan());
-        assert!(between_kinks([0.0, 1.0], &|_: f64| f64::NAN, &|_| 0).is_nan());
+        assert!(between_kinks([0.0, 1.0], &noise, &|_| 0, &|_, _| None).is_nan());
+        assert!(between_kinks([0.0, 1.0], &|x: f64| 1.0 / x, &|_| 0, &|_, _| None).is_nan());
+        assert!(between_kinks([0.0, 1.0], &|_: f64| f64::NAN, &|_| 0, &|_, _| None).is_nan());
     }
 }

@@ -56,7 +56,10 @@ impl ExpressionLeaf {
         let value = |s: f64| self.at(x * s.into(), 0.0.into());
         let branch = |s: f64| self.bound.branch(s * end, 0.0);
         x * match self.bound.has_kinks() {
-            true => quadrature::between_kinks([0.0, 1.0], &value, &branch),
+            true => {
+                let argument = |bit: u32, s: f64| self.bound.argument(bit, s * end, 0.0);
+                quadrature::between_kinks([0.0, 1.0], &value, &branch, &argument)
+            }
             false => quadrature::smooth([0.0, 1.0], &value),
         }
     }

@@ -115,6 +115,18 @@ impl BoundExpression {
         }
     }
 
+    /// What passes zero at kink `bit` of [`Self::branch`].
+    pub(crate) fn argument(&self, bit: u32, x: f64, v: f64) -> Option<f64> {
+        let (mut kinks, mut found) = (0, None);
+        self.carry_out::<f64, MAX_STACK>([x, v], &mut Trace::default(), &mut |op, operands| {
+            if op.has_kink() {
+                found = if kinks == bit { argument(op, operands) } else { found };
+                kinks += 1;
+            }
+        });
+        found
+    }
+
     fn run<V: Value>(&self, variables: [V; VARIABLES.len()], trace: &mut Trace<'_>) -> V {
         match self.is_low {
             true => self.carry_out::<V, FEW>(variables, trace, &mut |_, _| ()),
