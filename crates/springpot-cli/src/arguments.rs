@@ -5,6 +5,7 @@ mod look;
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum, ValueHint};
 use look::LookOptions;
 use springpot::fractional::{Definition, Method};
+use springpot_run::linear::Where;
 use springpot_run::sweep::Shard;
 use std::path::PathBuf;
 
@@ -757,11 +758,9 @@ pub(crate) struct ModulusOptions {
     pub(crate) out: Option<PathBuf>,
 }
 
+// The configuration that small motions are about: a doc comment would be the help of the command.
 #[derive(Debug, Args)]
-pub(crate) struct ModesOptions {
-    /// Scenario file (TOML)
-    #[arg(value_name = "SCENARIO")]
-    pub(crate) file: PathBuf,
+pub(crate) struct AboutOptions {
     /// Go to the static equilibrium first
     #[arg(long)]
     pub(crate) equilibrium: bool,
@@ -771,6 +770,22 @@ pub(crate) struct ModesOptions {
     /// Leave feedback and controllers out
     #[arg(long)]
     pub(crate) open: bool,
+}
+
+impl AboutOptions {
+    /// As the library is asked.
+    pub(crate) fn place(&self) -> Where<'_> {
+        Where { at: self.at.as_deref(), equilibrium: self.equilibrium, open: self.open }
+    }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ModesOptions {
+    /// Scenario file (TOML)
+    #[arg(value_name = "SCENARIO")]
+    pub(crate) file: PathBuf,
+    #[command(flatten)]
+    pub(crate) about: AboutOptions,
     /// Answer of a column to sines of an input, over the frequency
     #[arg(long, value_names = ["INPUT", "COLUMN"], num_args = 2, group = "frequency")]
     pub(crate) frequency_response: Vec<String>,
@@ -816,15 +831,8 @@ pub(crate) struct LineariseOptions {
     /// Outputs: columns of the results
     #[arg(long = "output", value_name = "COLUMN[,COLUMN…]", required = true, value_delimiter = ',')]
     pub(crate) outputs: Vec<String>,
-    /// Go to the static equilibrium first
-    #[arg(long)]
-    pub(crate) equilibrium: bool,
-    /// Time of the motion, in s or with a unit [default: the start]
-    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
-    pub(crate) at: Option<String>,
-    /// Leave feedback and controllers out
-    #[arg(long)]
-    pub(crate) open: bool,
+    #[command(flatten)]
+    pub(crate) about: AboutOptions,
     /// Frequencies between which it is exact
     #[arg(long, value_name = "FROM,TO", default_value = "0.1 Hz,100 Hz", allow_hyphen_values = true)]
     pub(crate) band: String,

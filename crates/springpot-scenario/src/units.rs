@@ -177,6 +177,15 @@ pub fn split_quantity(text: &str) -> Option<(&str, &str)> {
     is_unit.then_some((number, unit))
 }
 
+/// The SI unit of a quantity in whatever unit it is written ([`Unit::si_name`]); empty where it has none, and of what is no quantity.
+///
+/// # Errors
+/// [`UnitError`] of the unit.
+pub fn si_unit(text: &str) -> Result<String, UnitError> {
+    let unit = split_quantity(text).map_or("", |(_, unit)| unit);
+    Unit::parse(unit, &|_| None).map(|unit| unit.si_name())
+}
+
 /// The SI value of a quantity.
 ///
 /// `expected` is a unit of the dimension that is wanted; empty for a pure number, which also takes rad, deg and %. A number

@@ -6,7 +6,7 @@ use crate::arguments::LineariseOptions;
 use crate::{Ending, diagnostic, drawing, frequency, output, printed, terminal};
 use springpot::law::Catalog;
 use springpot::linear::StateKind;
-use springpot_run::linear::{self, Modelled, Where};
+use springpot_run::linear::{self, Modelled};
 use springpot_run::numbers::{brief, count, rough};
 use std::f64::consts::TAU;
 use std::io::Cursor;
@@ -24,8 +24,7 @@ fn model(options: &LineariseOptions, catalog: &Catalog) -> Result<Modelled, Stop
     let band = band(&options.band)?;
     let cases = Asked::cases((&options.file, &options.overrides, &[]), catalog)?;
     diagnostic::robot_warnings(&cases);
-    let place = Where { at: options.at.as_deref(), equilibrium: options.equilibrium, open: options.open };
-    let asked = Asked::about(&cases.plan(0).map_err(Stopped::told)?, place)?;
+    let asked = Asked::about(&cases.plan(0).map_err(Stopped::told)?, options.about.place())?;
     let names = [&options.inputs[..], &options.outputs[..]];
     let modelled = linear::linearise(&asked.about, names, band, options.tolerance).map_err(Stopped::from)?;
     asked.warn();

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 use springpot::law::{Derivative, Entry, NetworkText, Param, Table};
 use springpot_scenario::suggest;
-use springpot_scenario::units::{Unit, split_quantity};
+use springpot_scenario::units::si_unit;
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -135,9 +135,8 @@ fn units(network: &NetworkText, given: &Bound<'_, PyDict>) -> PyResult<Vec<(Stri
     for name in network.open() {
         let Some(value) = given.get_item(name)? else { continue };
         let Ok(text) = value.extract::<String>() else { continue };
-        let unit = split_quantity(&text).map_or("", |(_, unit)| unit);
-        let unit = Unit::parse(unit, &|_| None).map_err(|error| value_error(format!("{name}: {error}")))?;
-        units.push((name.to_owned(), unit.si_name()));
+        let unit = si_unit(&text).map_err(|error| value_error(format!("{name}: {error}")))?;
+        units.push((name.to_owned(), unit));
     }
     Ok(units)
 }

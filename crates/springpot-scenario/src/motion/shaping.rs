@@ -85,24 +85,24 @@ pub(super) fn measurement(
             Err(field.refuse(RefusalKind::OutOfRange, message, None))
         })
     };
-    let mut measurement = Measurement { deviation: vec![0.0; joints.robot.model().nv()], quantum: Vec::new(), seed: 1 };
-    measurement.quantum = size(table, "quantization", "a step")?;
+    let quantum = size(table, "quantization", "a step")?;
     if table.get("quantization").is_some() {
-        list(record, "quantization", joints, &measurement.quantum);
+        list(record, "quantization", joints, &quantum);
     }
+    let (mut deviation, mut seed) = (vec![0.0; joints.robot.model().nv()], 1);
     if let Some(field) = table.get("noise") {
         let own = field.table(&NOISE)?;
         if own.get("sd").is_none() {
             return Err(own.lacks("sd"));
         }
-        measurement.deviation = size(&own, "sd", "a standard deviation")?;
-        measurement.seed = own.get("seed").map(|field| field.whole()).transpose()?.unwrap_or(1).unsigned_abs();
+        deviation = size(&own, "sd", "a standard deviation")?;
+        seed = own.get("seed").map(|field| field.whole()).transpose()?.unwrap_or(1).unsigned_abs();
         let mut listed = Map::new();
-        list(&mut listed, "sd", joints, &measurement.deviation);
-        listed.insert("seed".to_owned(), json!(measurement.seed));
+        list(&mut listed, "sd", joints, &deviation);
+        listed.insert("seed".to_owned(), json!(seed));
         record.insert("noise".to_owned(), listed.into());
     }
-    Ok(Some(measurement))
+    Ok(Some(Measurement { deviation, quantum, seed }))
 }
 
 /// Keeps values of velocities by the names of their joints.

@@ -75,12 +75,14 @@ fn value(field: &Field<'_>) -> Read<(f64, String)> {
 /// The SI unit of a number, whatever unit it is written in; empty where it is none, or no number.
 pub(crate) fn unit_of(node: &Node) -> String {
     let unit = match &node.value {
-        Value::Text(text) => units::split_quantity(text).map(|(_, unit)| unit),
-        Value::Table(_) => node.get("unit").and_then(|unit| unit.text()),
+        Value::Text(text) => units::si_unit(text).ok(),
+        Value::Table(_) => {
+            let unit = node.get("unit").and_then(|unit| Unit::parse(unit.text()?, &|_| None).ok());
+            unit.map(|unit| unit.si_name())
+        }
         _ => None,
     };
-    let unit = unit.and_then(|unit| Unit::parse(unit, &|_| None).ok());
-    unit.map_or_else(String::new, |unit| unit.si_name())
+    unit.unwrap_or_default()
 }
 
 fn misread(field: &Field<'_>, error: &UnitError) -> crate::reader::Refused {

@@ -27,8 +27,8 @@ pub(crate) fn files_of(element: &Node) -> Vec<String> {
 
 /// Those that are no numbers: files, and texts of expressions.
 pub(crate) fn words_of(element: &Node) -> Vec<String> {
-    let texts = network_of(element).map_or(Vec::new(), |network| network.texts().map(str::to_owned).collect());
-    files_of(element).into_iter().chain(texts).collect()
+    network_of(element)
+        .map_or(Vec::new(), |network| network.files().chain(network.texts()).map(str::to_owned).collect())
 }
 
 /// The network of an element, with the expressions and the units that its parameters say.

@@ -155,11 +155,12 @@ impl At<'_> {
 
     /// The rate that the derivative part takes: q̇_d − q̇, or −q̇; 0 where it goes through a filter.
     pub fn derived(&self, k: usize) -> f64 {
-        match self.shaping {
-            Shaping { filter: Some(_), .. } => 0.0,
-            Shaping { on_measurement: true, .. } => self.model.coordinate_of(k).map_or(0.0, |_| -self.v[k]),
-            _ => self.error(k)[1],
-        }
+        if self.shaping.filter.is_some() { 0.0 } else { self.taken(k)[1] }
+    }
+
+    /// What derivatives of velocity `k` take, and its rate: the error, or −q.
+    pub(crate) fn taken(&self, k: usize) -> [f64; 2] {
+        self.shaping.taken(self.aim, self.model, k, [self.q, self.v])
     }
 }
 

@@ -1,5 +1,7 @@
 //! What lies between the errors of a controller and its law: weights, a filter, and what is measured.
 
+use super::controller::Aim;
+use crate::model::Model;
 use crate::random::Random;
 
 /// How the parts of a law see its error; the default shows it as it is.
@@ -17,6 +19,14 @@ impl Shaping {
     /// b of velocity `k`.
     pub(super) fn weight(&self, k: usize) -> f64 {
         self.set_point.get(k).copied().unwrap_or(1.0)
+    }
+
+    /// What the derivative part takes of velocity `k` of a joint of one degree, and its rate: the error, or −q; zeros for other joints.
+    pub(crate) fn taken(&self, aim: &Aim, model: &Model, k: usize, [q, v]: [&[f64]; 2]) -> [f64; 2] {
+        match self.on_measurement {
+            true => model.coordinate_of(k).map_or([0.0; 2], |place| [-q[place], -v[k]]),
+            false => aim.error(model, k, q, v),
+        }
     }
 
     /// Whether all parts see the error as it is.

@@ -109,6 +109,14 @@ impl Tangent {
         Self::Leaf(Term { coefficient: c, order: 1.0 }, None)
     }
 
+    /// A leaf that is a spring beside a dashpot, told as one; without a dashpot the spring alone.
+    pub(super) fn damped(k: f64, c: f64) -> Self {
+        match c {
+            0.0 => Self::spring(k),
+            _ => Self::Whole(Box::new(Self::Parallel(vec![Self::spring(k), Self::dashpot(c)]))),
+        }
+    }
+
     /// The same with times longer by a_T = `factor`, its inputs under the numbers that `outside` gives them.
     pub(super) fn shifted(self, factor: f64, outside: &dyn Fn(usize) -> Option<usize>) -> Self {
         let all = |parts: Vec<Self>| parts.into_iter().map(|part| part.shifted(factor, outside)).collect();

@@ -114,19 +114,12 @@ pub(super) fn at_rest(eye: &Eye, pull: &[f64], needed: &[f64]) -> Result<Control
 
 /// The value of an expression, and how it answers to positions and velocities.
 fn of(law: &Feedback, eye: &Eye) -> (f64, [Vec<f64>; 2]) {
-    let n = eye.v.len();
     let seen: Vec<f64> = law.senses().iter().map(|sense| eye.value(*sense)).collect();
     let jets: Vec<Jet> = seen.iter().map(|value| Jet::constant(*value)).collect();
     let branch = law.expression().branch(eye.t, &jets);
     let mut slopes = Vec::new();
     law.slopes_on(branch, eye.t, &seen, &mut slopes);
-    let mut by_state = [vec![0.0; n], vec![0.0; n]];
-    for (sense, slope) in law.senses().iter().zip(slopes).filter(|(_, slope)| *slope != 0.0) {
-        for (sum, of_sense) in by_state.iter_mut().zip(eye.slopes(*sense)) {
-            sum.iter_mut().zip(of_sense).for_each(|(sum, own)| *sum += slope * own);
-        }
-    }
-    (law.value_on(branch, eye.t, &seen), by_state)
+    (law.value_on(branch, eye.t, &seen), eye.answer(law, &slopes))
 }
 
 impl ControlAtRest {

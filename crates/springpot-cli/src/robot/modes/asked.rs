@@ -42,8 +42,7 @@ impl Asked {
 
     /// Case `k`, about what the options say.
     pub(super) fn of_case(cases: &Cases, k: usize, options: &ModesOptions) -> Result<Self, Stopped> {
-        let place = Where { at: options.at.as_deref(), equilibrium: options.equilibrium, open: options.open };
-        Self::about(&cases.plan(k).map_err(Stopped::told)?, place)
+        Self::about(&cases.plan(k).map_err(Stopped::told)?, options.about.place())
     }
 
     /// The small motions of one case.

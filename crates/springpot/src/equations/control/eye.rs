@@ -1,7 +1,7 @@
 //! Senses as numbers: their values, time derivatives and slopes.
 
 use crate::collocation::MAX_NODES;
-use crate::control::Sense;
+use crate::control::{Feedback, Sense};
 use crate::dynamics::{Kinematics, point_jacobian, point_jacobian_rate};
 use crate::signal::Jet;
 use crate::system::System;
@@ -111,6 +111,18 @@ impl Eye<'_> {
             Sense::Acceleration(_) | Sense::Force(_) | Sense::Derivative(_) => {}
         }
         slopes
+    }
+
+    /// How an expression answers to positions and velocities, whose slopes by its senses are these.
+    pub(crate) fn answer(&self, law: &Feedback, by_sense: &[f64]) -> Slopes {
+        let n = self.system.model.nv();
+        let mut by_state = [vec![0.0; n], vec![0.0; n]];
+        for (sense, slope) in law.senses().iter().zip(by_sense).filter(|(_, slope)| **slope != 0.0) {
+            for (sum, of_sense) in by_state.iter_mut().zip(self.slopes(*sense)) {
+                sum.iter_mut().zip(of_sense).for_each(|(sum, own)| *sum += slope * own);
+            }
+        }
+        by_state
     }
 }
 

@@ -26,7 +26,6 @@ use crate::collocation::STAGES;
 use crate::control::{Aim, AntiWindup, At, Control, Controlled, Feedback, Limit, Scratch, Shaping, TorqueSlopes};
 use crate::dynamics::Kinematics;
 use crate::law::{InputValue, Response};
-use crate::model::Model;
 use crate::system::System;
 use crate::system::error::RunError;
 use mode::Mode;
@@ -155,7 +154,7 @@ struct Node {
     rates: Vec<f64>,
     /// Error and its rate of every joint that the controller drives.
     errors: Vec<[f64; 2]>,
-    /// The same as derivatives with a past take it.
+    /// What derivatives with a past take in its place.
     derived: Vec<[f64; 2]>,
     /// The controller's force without its terms (nv).
     law: Vec<f64>,
@@ -291,11 +290,12 @@ impl ControlRun {
             if law.order < 0.0 && law.gain != 0.0 {
                 joint.integral = Some(self.terms.len());
             }
-            let mut error = self.nodes[0].aim.error(&system.model, law.velocity, q, v);
-            if law.order > 0.0 && controlled.shaping.on_measurement {
-                error = measured(&system.model, law.velocity, q, v);
-            }
-            let term = Term::begin(law, error[0], controlled.shaping.filter);
+            let (aim, shaping) = (&self.nodes[0].aim, &controlled.shaping);
+            let [taken, _] = match law.order > 0.0 {
+                true => shaping.taken(aim, &system.model, law.velocity, [q, v]),
+                false => aim.error(&system.model, law.velocity, q, v),
+            };
+            let term = Term::begin(law, taken, shaping.filter);
             self.terms.push(term.map_err(RunError::of_kernel("the controller"))?);
         }
         Ok(())
@@ -397,11 +397,6 @@ fn at<'a>(eye: &Eye<'a>, aim: &'a Aim, shaping: &'a Shaping) -> At<'a> {
         aim,
         shaping,
     }
-}
-
-/// −q of the coordinate that velocity `k` of a joint of one degree moves, and its rate: what is derived in place of its error.
-fn measured(model: &Model, k: usize, q: &[f64], v: &[f64]) -> [f64; 2] {
-    model.coordinate_of(k).map_or([0.0; 2], |place| [-q[place], -v[k]])
 }
 
 /// The value of an input that follows from the state.

@@ -1,7 +1,7 @@
 //! Control at one time, for rows and for the ledger.
 
 use super::eye::Eye;
-use super::{ControlRun, LawRun, Target, at, input, measured};
+use super::{ControlRun, LawRun, Target, at, input};
 use crate::control::Feedback;
 use crate::dynamics::Kinematics;
 use crate::elements::ElementBank;
@@ -108,11 +108,7 @@ impl ControlRun {
             }
             for joint in &self.joints {
                 let own = self.terms.iter().filter(|term| term.law.velocity == joint.velocity);
-                let error = at.error(joint.velocity);
-                let derived = match controlled.shaping.on_measurement {
-                    true => measured(&cx.system.model, joint.velocity, q, v),
-                    false => error,
-                };
+                let [error, derived] = [at.error(joint.velocity), at.taken(joint.velocity)];
                 let wanted = law[joint.velocity]
                     + own
                         .map(|term| (term, if term.is_integral() { error } else { derived }))

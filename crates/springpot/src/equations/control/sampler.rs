@@ -2,7 +2,7 @@
 
 use super::eye::{Eye, Shown};
 use super::variation::{Held as HeldVariation, OfSamples, Sides};
-use super::{ControlRun, Target, at, measured as on};
+use super::{ControlRun, Target, at};
 use crate::control::{Aim, At, Control, Feedback, Sampling, Scratch, Sense};
 use crate::equations::context::Held;
 use crate::observe::Snapshot;
@@ -364,9 +364,7 @@ impl Sampler {
         }
         for &k in &*driven {
             let tau = &mut tau[k];
-            let error = at.error(k);
-            let derived = if controlled.shaping.on_measurement { on(&system.model, k, eye.q, eye.v) } else { error };
-            *tau += run.terms_now(k, error, derived);
+            *tau += run.terms_now(k, at.error(k), at.taken(k));
             let limit = controlled.limits.get(k).copied().unwrap_or_default();
             limited[k] = Sides::default();
             if state.has_said {

@@ -3,7 +3,7 @@
 use super::eye::{Eye, InputSlopes};
 use super::mode::Bound;
 use super::term::{Integrand, Term};
-use super::{ControlRun, LawRun, Node, Target, at, input, measured};
+use super::{ControlRun, LawRun, Node, Target, at, input};
 use crate::collocation::{Nodes, RADAU_NODES, STAGES};
 use crate::control::TorqueSlopes;
 use crate::dynamics::RneaDerivatives;
@@ -66,10 +66,7 @@ impl ControlRun {
         node.errors.clear();
         node.errors.extend(joints.iter().map(|joint| at.error(joint.velocity)));
         node.derived.clear();
-        if controlled.shaping.on_measurement {
-            let model = &eye.system.model;
-            node.derived.extend(joints.iter().map(|joint| measured(model, joint.velocity, eye.q, eye.v)));
-        }
+        node.derived.extend(joints.iter().map(|joint| at.taken(joint.velocity)));
         if *is_continuous {
             controlled.torque(&at, scratch, &mut node.law);
         }
@@ -254,12 +251,7 @@ impl ControlRun {
             let (own, rest) = seen.split_at(law.law.senses().len());
             seen = rest;
             law.law.slopes_on(law.branch, node.t, own, spare);
-            let mut by_state = [vec![0.0; n], vec![0.0; n]];
-            for (sense, slope) in law.law.senses().iter().zip(&*spare).filter(|(_, slope)| **slope != 0.0) {
-                for (sum, of_sense) in by_state.iter_mut().zip(eye.slopes(*sense)) {
-                    sum.iter_mut().zip(of_sense).for_each(|(sum, own)| *sum += slope * own);
-                }
-            }
+            let by_state = eye.answer(&law.law, spare);
             match law.target {
                 Target::Torque(k) => {
                     let [by_q, by_v] = by_state;
@@ -430,10 +422,10 @@ impl ControlRun {
             self.aim_at(system, t, 0)?;
             let Self { control, terms, nodes, ends, .. } = &mut *self;
             ends[k].clear();
-            let on_measurement = control.controller.as_ref().is_some_and(|own| own.shaping.on_measurement);
-            ends[k].extend(terms.iter().map(|term| match on_measurement && !term.is_integral() {
-                true => measured(&system.model, term.law.velocity, q, v),
-                false => nodes[0].aim.error(&system.model, term.law.velocity, q, v),
+            let (aim, shaping) = (&nodes[0].aim, control.controller.as_ref().map(|own| &own.shaping));
+            ends[k].extend(terms.iter().map(|term| match shaping.filter(|_| !term.is_integral()) {
+                Some(shaping) => shaping.taken(aim, &system.model, term.law.velocity, [q, v]),
+                None => aim.error(&system.model, term.law.velocity, q, v),
             }));
         }
         Ok(())
@@ -459,8 +451,7 @@ impl ControlRun {
 impl Node {
     /// What a term of joint `c` takes here: its error, or what is derived in place of it, and the rate of that.
     pub(super) fn taken_by(&self, term: &Term, c: usize) -> [f64; 2] {
-        let derived = self.derived.get(c).filter(|_| !term.is_integral());
-        derived.map_or_else(|| self.errors[c], |derived| *derived)
+        if term.is_integral() { self.errors[c] } else { self.derived[c] }
     }
 }
 

@@ -4,7 +4,7 @@ use super::contract::{Leaf, When};
 use super::hysteresis::Values;
 use crate::dual::{Dual, Real};
 use crate::law::state::StateRef;
-use crate::law::step::{Observation, Point, Power, Step};
+use crate::law::step::{Observation, Point, Power, Powers, Step};
 use crate::law::variation::{
     AtNodes, ObservationVariation, PointVariation, PowersVariation, StepVariation, TakeError, VariationError,
     VariationMut, VariationRef,
@@ -76,6 +76,13 @@ pub trait Columns: Leaf + Clone {
         _variables: &[T],
         _take: &mut dyn FnMut(T),
     ) {
+    }
+}
+
+/// Adds what a leaf without inner variables dissipates at the start and at the nodes.
+pub(super) fn add_dissipation<L: Columns<Solved<f64> = ()>>(leaf: &L, step: &Step, powers: &mut Powers) {
+    for (k, power) in powers.iter_mut().enumerate().take(step.nodes.count() + 1) {
+        power.dissipation += leaf.power(step, &[], &(), k).dissipation;
     }
 }
 

@@ -1,6 +1,6 @@
 //! The ends of a joint as stops.
 
-use super::columns::{ByColumns, Columns};
+use super::columns::{ByColumns, Columns, add_dissipation};
 use super::contract::{Clock, Holds, Leaf};
 use crate::dual::{Dual, Real};
 use crate::law::rule::RuleError;
@@ -85,9 +85,7 @@ impl Leaf for EndStop {
     }
 
     fn powers(&self, step: &Step, _: StateRef, powers: &mut Powers) {
-        for (k, power) in powers.iter_mut().enumerate().take(step.nodes.count() + 1) {
-            power.dissipation += self.power(step, &[], &(), k).dissipation;
-        }
+        add_dissipation(self, step, powers);
     }
 
     fn now(&self, at: &Point, _: StateRef) -> Observation {
@@ -104,12 +102,7 @@ impl Leaf for EndStop {
 
     fn at_rest(&self, at: &Point, _: f64) -> AtRest {
         let (force, slope, damping) = self.response(at.stroke, 0.0);
-        let spring = Tangent::spring(slope);
-        let tangent = match damping {
-            0.0 => spring,
-            _ => Tangent::Whole(Box::new(Tangent::Parallel(vec![spring, Tangent::dashpot(damping)]))),
-        };
-        AtRest { force, stiffness: Some(slope), tangent }
+        AtRest { force, stiffness: Some(slope), tangent: Tangent::damped(slope, damping) }
     }
 
     fn clock(&self) -> Clock {

@@ -1,6 +1,6 @@
 //! The leaf whose force a text says.
 
-use super::columns::{ByColumns, Columns};
+use super::columns::{ByColumns, Columns, add_dissipation};
 use super::contract::{Holds, Leaf};
 use super::kind::{LeafBuild, LeafKind};
 use crate::dual::{Dual, Real};
@@ -106,9 +106,7 @@ impl Leaf for ExpressionLeaf {
 
     fn powers(&self, step: &Step, _: StateRef, powers: &mut Powers) {
         if self.has_rate {
-            for (k, power) in powers.iter_mut().enumerate().take(step.nodes.count() + 1) {
-                power.dissipation += self.power(step, &[], &(), k).dissipation;
-            }
+            add_dissipation(self, step, powers);
         }
     }
 
@@ -137,14 +135,9 @@ impl Leaf for ExpressionLeaf {
 
     fn at_rest(&self, at: &Point, _: f64) -> AtRest {
         let (force, [slope, damping]) = self.resting(at.stroke);
-        let spring = Tangent::spring(slope);
-        let tangent = match damping {
-            0.0 => spring,
-            _ => Tangent::Whole(Box::new(Tangent::Parallel(vec![spring, Tangent::dashpot(damping)]))),
-        };
         // Of a dashpot there is none.
         let stiffness = (!self.has_rate || force != 0.0 || slope != 0.0).then_some(slope);
-        AtRest { force, stiffness, tangent }
+        AtRest { force, stiffness, tangent: Tangent::damped(slope, damping) }
     }
 
     fn holds(&self) -> Holds {

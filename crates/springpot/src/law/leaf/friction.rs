@@ -1,6 +1,6 @@
 //! Smooth friction.
 
-use super::columns::{ByColumns, Columns};
+use super::columns::{ByColumns, Columns, add_dissipation};
 use super::contract::{Clock, Holds, Leaf, Slide};
 use super::kind::{LeafBuild, LeafKind};
 use super::springpot::Coefficient;
@@ -64,9 +64,7 @@ impl Leaf for Friction {
     }
 
     fn powers(&self, step: &Step, _: StateRef, powers: &mut Powers) {
-        for (k, power) in powers.iter_mut().enumerate().take(step.nodes.count() + 1) {
-            power.dissipation += self.power(step, &[], &(), k).dissipation;
-        }
+        add_dissipation(self, step, powers);
     }
 
     fn now(&self, at: &Point, _: StateRef) -> Observation {

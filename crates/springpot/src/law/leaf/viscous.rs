@@ -1,6 +1,6 @@
 //! A dashpot whose viscosity follows an input.
 
-use super::columns::{ByColumns, Columns};
+use super::columns::{ByColumns, Columns, add_dissipation};
 use super::contract::{Holds, Leaf};
 use super::springpot::Coefficient;
 use crate::collocation::MAX_NODES;
@@ -40,9 +40,7 @@ impl Leaf for Viscous {
     }
 
     fn powers(&self, step: &Step, _: StateRef, powers: &mut Powers) {
-        for (k, power) in powers.iter_mut().enumerate().take(step.nodes.count() + 1) {
-            power.dissipation += self.power(step, &[], &(), k).dissipation;
-        }
+        add_dissipation(self, step, powers);
     }
 
     fn now(&self, at: &Point, _: StateRef) -> Observation {
